@@ -106,8 +106,7 @@ std::vector<vtk::Span> spansOf(const vtk::Series& ours, const vtk::Series& tree)
   if (ours.points.empty() || tree.points.empty()) return {};
   const double from = ours.points.front().x, to = tree.points.front().x;
   if (!(to > 1.5 * from)) return {};
-  const double digits =
-      std::pow(10.0, std::floor(std::log10(to / from)) - 1.0); // more than two digits change with each run
+  const double digits = std::pow(10.0, std::floor(std::log10(to / from)) - 1.0); // two digits: others vary
   return {{from, to, plainText(std::round(to / from / digits) * digits) + " x faster"}};
 }
 

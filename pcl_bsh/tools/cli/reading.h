@@ -29,9 +29,9 @@ struct ReadChoice {
   /// The settings of the input: it keeps its coordinate system, or gets to_crs. Its unit is that of all lengths.
   io::ReadSettings ofInput(const std::filesystem::path& file) const;
 
-  /// The settings of an obstacle: where a unit is given, it is converted to the input's. @param input_unit as it was
-  /// read
-  /// @param sigmas the field of its uncertainties, or empty. @throws UsageError where the unit is not known
+  /// The settings of an obstacle: where a unit is given, it is converted to the input's.
+  /// @param input_unit as the input was read. @param sigmas the field of its uncertainties, or empty
+  /// @throws UsageError where the unit is not known
   io::ReadSettings ofObstacle(const std::filesystem::path& file, std::optional<io::LengthUnit> input_unit,
                               const std::string& sigmas) const;
 

@@ -160,7 +160,7 @@ std::optional<CollideOptions> parseCollideOptions(int argc, char** argv)
   question.swept = path.swept.value_or(0.0);
   requireConsistent(options);
   question.wanted.flags = question.wanted.closest = true;
-  question.wanted.obstacle_flags = options.obstacle_out && !question.seen; // which brings them
+  question.wanted.obstacle_flags = options.obstacle_out && !question.seen; // --seen brings them itself
   question.wanted.contacts = options.tellsContacts() || !options.clashes.empty();
   question.wanted.poses = question.wanted.contacts && (!path.swept || options.report); // swept, it takes longer
   question.wanted.distances = options.distances;

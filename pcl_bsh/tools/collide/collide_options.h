@@ -31,18 +31,18 @@ struct CollideOptions : SeveralObstacles, ClashOptions {
   Keep keep = Keep::flagged;
   Question question;                ///< its path: a straight run, or that of the trajectory, once it is read
   std::filesystem::path trajectory; ///< a file of poses, or empty
-  std::filesystem::path pairs;      ///< of places, which the pose is to fit, or empty
+  std::filesystem::path pairs;      ///< a file of pairs of places that the pose is to fit, or empty
   std::filesystem::path poses_out;  ///< for the poses that are asked about, or empty
   bool distances = false;           ///< of every point
   std::optional<std::filesystem::path> distance_page;
   ReadChoice reading;
   std::vector<std::string> warnings;       ///< of the options themselves
-  std::vector<std::string> names_of_poses; ///< the options that gave them, as advice() takes these
+  std::vector<std::string> names_of_poses; ///< the options that gave poses, as advice() takes them
   CommandFiles files;                      ///< all that are read or written
 
   bool moves() const { return question.path.has_value() || !trajectory.empty(); }
 
-  /// Whether the output gets distances and poses: not along a path with an accuracy that cannot tell these.
+  /// Whether the output gets distances and poses: along a path, unless the accuracy stops early and cannot tell them.
   bool tellsContacts() const { return moves() && !question.accuracy.stopsEarly(); }
 };
 

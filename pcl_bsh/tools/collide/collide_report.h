@@ -38,15 +38,15 @@ struct CollisionReport {
   CloudReport input;
   CloudReport obstacle;                        ///< of a surface, its vertices
   std::optional<io::Obstacle> surface;         ///< the obstacle, where it is one
-  std::vector<io::ComparedObstacle> obstacles; ///< that alone, or several that have names
+  std::vector<io::ComparedObstacle> obstacles; ///< the only one, or several that have names
   std::vector<io::BetweenObstacles> between;   ///< where several are compared with each other
   std::uint32_t closest_obstacle = kNothing;   ///< of several, that of the closest pair
-  bool input_is_surface = false;               ///< its numbers are those of triangles
+  bool input_is_surface = false;               ///< then its records are triangles
   std::string unit;                            ///< of all lengths, where it is known; else empty
   std::string coordinate_system;               ///< of the input, where its file names one; else empty
   Question question;
   Answer answer;
-  std::optional<nlohmann::ordered_json> distances; ///< where every point's was asked for
+  std::optional<nlohmann::ordered_json> distances; ///< the report of --distances
   std::size_t voxels_total = 0;
   Seconds seconds;
   std::vector<std::string> warnings;
@@ -55,9 +55,9 @@ struct CollisionReport {
   bool mayLeaveUndecided() const { return question.accuracy.stopsEarly() || question.isUncertain(); }
 };
 
-/// Where `surface` is not null, the obstacle's numbers are those of triangles.
-/// `distance` and `closest_pair` are null when a cloud has no finite point, or nothing collides along a path;
-/// `distance_interval` along a path, and each of its ends where it is not known.
+/// Where `surface` is not null, records of the obstacle are triangles.
+/// `distance` and `closest_pair` are null when a cloud has no finite point, or nothing collides along a path.
+/// `distance_interval` is null along a path that does not tell it; each of its ends is null where it is not known.
 nlohmann::ordered_json toJson(const CollisionReport& report);
 
 /// Tells people in a sentence what was found, after the warnings.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From files to the two things of a question, and back. Each step adds its seconds.
+// Loads the input, builds hierarchies, and writes an input that is a surface. Each step adds its seconds.
 #pragma once
 
 #include "collide_options.h"
@@ -23,7 +23,7 @@ struct Scan {
 ///   points alone, or the output cannot hold it
 Scan loadInput(const CollideOptions& options, double& seconds);
 
-/// @throws InvalidInput as Shape::hierarchy() does
+/// Builds a shape's hierarchy, as a step of the program. @throws InvalidInput as Shape::hierarchy() does
 const SphereHierarchy& build(Shape& shape, const Uncertainty& uncertainty, unsigned threads, double& seconds);
 
 /// The mesh with what was found as properties of its faces, or the triangles that are kept.

@@ -12,7 +12,7 @@
 namespace pcl_bsh::cli {
 namespace {
 
-/// As sure as it is.
+/// The smallest distance, with how sure it is.
 std::string distanceText(const CollisionReport& report)
 {
   std::ostringstream text;
@@ -38,7 +38,7 @@ std::string posesOfUnseen(const Answer::Unseen& unseen)
   return text.str();
 }
 
-/// With the unit, where it is known.
+/// The statistics of distances, with the unit where it is known.
 std::string distanceSummary(const io::DistanceReport& report)
 {
   const auto length = [&](double value) {
@@ -59,7 +59,7 @@ std::string distanceSummary(const io::DistanceReport& report)
          "; Hausdorff distance " + length(report.hausdorff) + certainly;
 }
 
-/// The obstacle of the closest pair: a record of it, and its name.
+/// The word for a record of the closest pair's obstacle: "point" or "triangle".
 const char* partOf(const CollisionReport& report)
 {
   if (report.haveNames()) return report.obstacles[report.closest_obstacle].loaded.partName();

@@ -22,8 +22,7 @@ namespace pcl_bsh::cli {
 #ifdef PCL_BSH_SITE_QUERIES
 namespace {
 
-/// A point's number counts the records of all sources, one source after the other, so that answers are those of one
-/// file.
+/// A point's number counts the records of the sources, one after the other, so that answers are those of one file.
 class SiteScan : public GaugeScan {
 public:
   explicit SiteScan(const GaugeOptions& options) : site_(site::readSite(options.input))

@@ -27,7 +27,7 @@ SiteClashList::SiteClashList(const site::Site& site, const SiteOptions& options,
 {
   if (options.clashes.empty()) return;
   options.requireWritable();
-  std::vector<io::ComparedObstacle> other; // that is a site
+  std::vector<io::ComparedObstacle> other; // the obstacle, if it is a site
   if (!obstacles) other.push_back({"", options.obstacle.string(), {}, {}, options.question});
   std::vector<io::ComparedObstacle>& all = obstacles ? obstacles->all : other;
   listing_.input = options.site.string();

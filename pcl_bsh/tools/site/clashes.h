@@ -23,8 +23,8 @@ namespace pcl_bsh::cli {
 class SiteClashList {
 public:
   /// Reads the earlier list. To be called by all ranks.
-  /// @param obstacles in memory, with their questions; null: the obstacle is a site. They get their answers
-  ///   where they are not asked about
+  /// @param obstacles in memory, with their questions; null: the obstacle is a site. Obstacles that are not asked about
+  ///   get the answers of the earlier list
   /// @throws files::FileError for a list that cannot be written or compared with
   SiteClashList(const site::Site& site, const SiteOptions& options, ObstacleFiles* obstacles);
 
@@ -63,7 +63,7 @@ private:
     site::SiteClashes clashes;
     PointsView model;
     const TrajectoryResult& found;
-    Visit visit; ///< shows its way to former places
+    Visit visit; ///< tells former places where the obstacle moved
     const io::Obstacle* surface = nullptr;
     const Answer::Unseen* unseen = nullptr;
     std::string name = {};

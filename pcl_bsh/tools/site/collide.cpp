@@ -42,7 +42,7 @@ public:
   ObstacleOutput(const site::Site& site, const site::Site& obstacle, const SiteOptions& options)
   {
     const std::vector fields = {collisionField()};
-    if (!options.out.empty()) { // which has checked alone that there is room for it
+    if (!options.out.empty()) { // the space for --out was checked alone
       files::requireSpace({{options.out, site::spaceWanted(site, options.out, fields)},
                            {options.obstacle_out, site::spaceWanted(obstacle, options.obstacle_out, fields)}});
     }
@@ -199,7 +199,7 @@ std::unique_ptr<Compared> comparedWith(const site::Site& site, const SiteOptions
   return std::make_unique<NamedObstacles>(site, options);
 }
 
-/// @param keeps set where what is found stays in --out although the run fails
+/// @param keeps set to whether what is found stays in --out if the run fails
 int answer(SiteOptions options, bool& keeps)
 {
   const auto begin = std::chrono::steady_clock::now();

@@ -21,7 +21,7 @@ namespace {
 
 using Type = pcl::PCLPointField;
 
-/// As pcl_bsh_collide: distances and poses are of paths, where nothing stops early.
+/// Whether distances and poses are written: as by pcl_bsh_collide, along a path whose accuracy never stops early.
 bool tellsPoses(const SiteOptions& options)
 {
   return !options.trajectory.empty() && options.question.wanted.contacts;

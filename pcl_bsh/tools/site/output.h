@@ -16,7 +16,7 @@
 
 namespace pcl_bsh::cli {
 
-/// The obstacles of a site that are in memory: the only one, which has no name, or several with names.
+/// The obstacles in memory that a site is compared with: the only one, which has no name, or several with names.
 struct ObstacleFiles {
   /// @throws files::FileError, also where points of the only one shall be written and cannot; std::invalid_argument for
   ///   an uncertainty that it cannot have
@@ -28,10 +28,10 @@ struct ObstacleFiles {
   /// The surface of the only one; null where it is points.
   const io::Obstacle* surface() const { return only().isSurface() ? &only() : nullptr; }
 
-  /// Tells each the question about it: the path has been read.
+  /// Sets the question about each obstacle; to be called again once the path is read.
   void setQuestion(const Question& question);
 
-  /// Writes points or triangles of the only one with these flags, where they are asked for: on the first rank.
+  /// Writes points or triangles of the only one with these flags, if they are asked for and this is the first rank.
   void write(const std::vector<Verdict>& flags, const SiteOptions& options) const;
 
   std::vector<io::ComparedObstacle> all;

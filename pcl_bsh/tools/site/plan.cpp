@@ -13,7 +13,7 @@ double secondsOf(const site::TileCost& tile)
   return tile.reading + tile.asking;
 }
 
-/// The most that one of so many ranks has to do, where each takes the next tile when it has done one.
+/// Seconds of work of the busiest of so many ranks, where each takes the next tile when it has done one.
 double busiestOf(const std::vector<site::TileCost>& tiles, std::size_t ranks)
 {
   std::vector<double> load(std::min(ranks, std::max<std::size_t>(tiles.size(), 1)), 0.0);
@@ -38,7 +38,7 @@ RunPlan planRun(const MeasuredRun& run, unsigned ranks)
   plan.even = sum / ranks;
   plan.copying = run.copying * run.ranks / ranks;
   plan.seconds = plan.on_all + plan.busiest + plan.copying;
-  constexpr double most = 0.5; // of the time: what takes more is the limit
+  constexpr double most = 0.5; // what takes a larger share of the time is the limit
   if (plan.on_all > most * plan.seconds)
     plan.limit = "what all ranks do";
   else if (ranks > 1 && longest >= 0.9 * plan.busiest)

@@ -23,16 +23,15 @@ struct RunPlan {
   /// The part that more ranks cannot shorten, or the reason why ranks stand idle: "what all ranks do", "the longest
   /// tile", "too few tiles", "uneven tiles". It is "work" where more ranks would help.
   std::string limit;
-  double on_all =
-      0.0; ///< seconds that each rank spends by itself: the obstacle is read, its hierarchy built, tiles chosen
+  double on_all = 0.0;  ///< seconds of each rank to read the obstacle, build its hierarchy and choose tiles
   double copying = 0.0; ///< of each rank
   double busiest = 0.0; ///< seconds of the rank with the most work
   double even = 0.0;    ///< seconds of each rank if the work were dealt evenly
   double reading = 0.0; ///< of all tiles together: the least time of a disk that serves one rank at a time
 };
 
-/// Tiles are dealt as TileVisitor deals them, to each rank when it has done one; ranks compute and read as fast as
-/// those of the run.
+/// Predicts a run. A rank gets its next tile when it has done one, as TileVisitor deals them. Ranks compute and read as
+/// fast as those of the measured run.
 RunPlan planRun(const MeasuredRun& run, unsigned ranks);
 
 } // namespace pcl_bsh::cli

@@ -54,7 +54,7 @@ void addMemory(CLI::App& app, SiteOptions& options)
       ->transform(amount(1024, std::uint64_t{64} << 20, "give 64M or more"));
 }
 
-/// Whatever lies in the site's folder is its own: no file of an answer may take a tile's place.
+/// Refuses an output in a site's folder, where it might take a tile's place. @throws UsageError
 void requireOutside(const std::filesystem::path& site, const std::string& name, const std::string& option,
                     const std::filesystem::path& file)
 {
@@ -77,7 +77,7 @@ void requireExport(const SiteOptions& options)
 }
 
 #ifdef PCL_BSH_SITE_QUERIES
-/// The options of `collide` as they are written.
+/// The options of `collide` as typed.
 struct CollideTexts {
   bool any = false, closest = false, distances = false;
   std::string pose;
@@ -163,7 +163,7 @@ struct CollideTexts {
     Question& question = options.question;
     const bool needs_clearance = !closest && !distances;
     if (!needs_clearance) question.clearance.reset();
-    if (moves) question.path = {Eigen::Isometry3d::Identity()}; // whatever they are
+    if (moves) question.path = {Eigen::Isometry3d::Identity()}; // in place of poses that are read later
     Wanted& wanted = question.wanted;
     wanted.any = any;
     wanted.closest = closest || several;

@@ -25,8 +25,8 @@ struct SiteOptions : SeveralObstacles, ClashOptions {
   SiteCommand command = SiteCommand::info;
   std::vector<std::filesystem::path> clouds; ///< to make a site of
   std::filesystem::path site;
-  std::filesystem::path
-      out; ///< of `write`: a .pcd or .pvtp file, or a folder for the sources; of `collide`: a site, or none
+  /// For `write` a .pcd or .pvtp file, or a folder for the sources; for `collide` a site, or none.
+  std::filesystem::path out;
   std::uint64_t memory = std::uint64_t{2} << 30;
   std::uint64_t tile_points = 4'000'000;
   bool json = false; ///< of `info` and `validate`: print JSON
@@ -42,9 +42,10 @@ struct SiteOptions : SeveralObstacles, ClashOptions {
   /// The question. Its path is that of `trajectory`, once that is read. Its threads are those of each process. For
   /// `make`, it states whether meshes are their vertices.
   Question question;
-  bool alongPath() const { return question.path || question.wanted.contacts; } ///< also with a single pose
+  /// Whether the answer is that of a path, also with a single pose.
+  bool alongPath() const { return question.path || question.wanted.contacts; }
   std::filesystem::path obstacle, trajectory, report;
-  std::filesystem::path obstacle_out; ///< the obstacle with its flags, a cloud or a site as it, or none
+  std::filesystem::path obstacle_out; ///< obstacle with flags: a site if that is one, else a file; or none
   bool resume = false;                ///< go on with what the same question has left in `out`
   unsigned make_threads = 0;
   std::vector<unsigned> plan; ///< numbers of ranks whose time is predicted

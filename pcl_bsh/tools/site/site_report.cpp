@@ -8,14 +8,14 @@ namespace pcl_bsh::cli {
 
 namespace {
 
-/// The number of points that collide, or are undecided, of the one or of the other.
+/// Adds the numbers of points that collide and that are undecided. @param of put behind the keys
 void putCounts(Json& report, const std::string& of, std::uint64_t colliding, std::uint64_t undecided)
 {
   report["colliding" + of] = colliding;
   report["undecided" + of] = undecided;
 }
 
-/// A point of a site, by its name.
+/// A point of a site, by the file of its source and its record there.
 Json named(const site::Site& site, const site::SitePoint& point)
 {
   return {{"source", site.sources.at(point.source).file}, {"record", point.record}};
@@ -63,7 +63,7 @@ void putAnswer(Json& report, const site::Site& site, const site::Site* other, co
 {
   const Question& question = options.question;
   const Wanted& wanted = question.wanted;
-  const bool several = !options.obstacles.empty(); // whose smallest distance is no answer of its own
+  const bool several = !options.obstacles.empty(); // putObstacles() tells their smallest distance
   if (wanted.any) {
     report["collides"] = found.any.verdict == Verdict::colliding;
     report["undecided"] = found.any.verdict == Verdict::undecided;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The report of pcl_bsh_site collide: its question, and the parts that do not depend on the question.
+// The parts of the JSON report of pcl_bsh_site collide.
 #pragma once
 
 #include "output.h"
@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 /// Begins a report with the question.
 Json beginReport(const site::Site& site, const SiteOptions& options);
 
-/// @param key of the report
+/// Adds how many tiles there are, were needed and were read. @param key of the report that gets these
 void putTiles(Json& report, const char* key, const site::TilesRead& tiles);
 
 /// Adds the answer, except the tiles. @param other the obstacle, where it is a site; else null
@@ -28,7 +28,7 @@ void putTiles(Json& report, const char* key, const site::TilesRead& tiles);
 void putAnswer(Json& report, const site::Site& site, const site::Site* other, const std::string& part,
                const SiteOptions& options, const site::SiteAnswer& found);
 
-/// Adds the answers about each of several obstacles, and about two of them.
+/// Adds the answers about each of several obstacles, and about pairs of them.
 void putObstacles(Json& report, const site::Site& site, const ObstacleFiles& obstacles,
                   const site::SiteObstaclesAnswer& found, const std::vector<io::BetweenObstacles>& between);
 

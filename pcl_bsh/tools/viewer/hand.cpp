@@ -48,7 +48,8 @@ bool Hand::take(int x, int y, bool turning)
   return true;
 }
 
-/// In the plane of the screen through the place that was taken, or turned about that place.
+/// The pose that a pixel asks for: moved in the plane of the screen through the place that was taken, or turned about
+/// that place.
 Eigen::Isometry3d Hand::wanted(int x, int y) const
 {
   Eigen::Isometry3d pose = pose_;

@@ -23,8 +23,8 @@ public:
   {
   }
 
-  /// Takes the object that is seen at a pixel. @param turning it turns about the place that was taken, in place of
-  /// moving @return whether there is one that can be led
+  /// Takes the object that is seen at a pixel. @return whether there is one that can be led
+  /// @param turning whether it turns about the place that was taken, instead of moving
   bool take(int x, int y, bool turning);
 
   /// Leads it towards a pixel.
@@ -50,7 +50,7 @@ private:
   Eigen::Vector3d place_ = Eigen::Vector3d::Zero();
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity(); ///< of the object then
   const DragStep* now_ = nullptr;                          ///< not drawn yet; null: there is nothing new
-  double response_ = 0.0;                                  ///< seconds that it took
+  double response_ = 0.0;                                  ///< seconds of the last move
   double pause_ = 0.0;                                     ///< seconds from one picture to the next, at least
   std::chrono::steady_clock::time_point begin_, drawn_;
   std::size_t events_ = 0, pictures_ = 0;

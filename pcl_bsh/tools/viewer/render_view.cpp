@@ -102,7 +102,7 @@ void RenderView::refresh()
   show(step_);
 }
 
-/// Arrows are a quarter as long as the smallest cloud that moves, without one as the smallest cloud.
+/// Arrows are a quarter as long as the smallest cloud that moves or, where none does, as the smallest cloud.
 void RenderView::drawContacts(const std::vector<Contact>& contacts)
 {
   contact_props_.clear();
@@ -232,7 +232,7 @@ vtkBoundingBox RenderView::boundsOf(std::size_t cloud) const
   return bounds;
 }
 
-/// Around all points that collide, and what moves.
+/// The bounds of all parts that collide, and of all clouds that move.
 vtkBoundingBox RenderView::collidingBounds() const
 {
   vtkBoundingBox bounds;
@@ -244,7 +244,7 @@ vtkBoundingBox RenderView::collidingBounds() const
   return bounds;
 }
 
-/// All that is drawn, with what collides of the scan or, where nothing of it does, of anything.
+/// All that is drawn. Marks are what collides of the scan or, where nothing of it does, of all clouds.
 std::vector<Drawn> RenderView::drawnAbout(const vtkBoundingBox& seen) const
 {
   constexpr double steps = 200.0;

@@ -30,8 +30,8 @@ public:
   void show(std::size_t step);
   std::size_t step() const { return step_; }
 
-  /// While an object is led by hand: all clouds where they are now, the contacts and the smallest distance, with what
-  /// collides unmarked until refresh().
+  /// Draws all clouds where they are now, the contacts and the smallest distance, while an object is led by hand.
+  /// Nothing is marked as colliding until refresh().
   void follow(const DragStep& now, const std::string& note);
   void refresh(); ///< draws the step anew, with what collides there
 

@@ -151,7 +151,7 @@ void checkScene(const Options& options)
     throw UsageError("--export: " + options.export_to->string() + ": holds one cloud: name a .vtm file");
 }
 
-/// Obstacles with names have poses of their own.
+/// Refuses obstacles without names, and poses of a model: obstacles with names have poses of their own.
 void checkNamed(const Options& options)
 {
   if (options.clouds.size() > 1)

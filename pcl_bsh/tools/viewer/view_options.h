@@ -43,7 +43,7 @@ struct Options : cli::SeveralObstacles {
   std::optional<std::filesystem::path> trajectory;
   Question question; ///< of the first cloud and each other one; the pose is the model's, without a trajectory
   std::optional<Coloring> color;
-  std::optional<double> range; ///< distances up to here have colours; what collides, the colour of collisions
+  std::optional<double> range; ///< distances up to here have colours; what collides has that of collisions
   std::optional<Cut> cut;      ///< of the first cloud
   std::optional<unsigned> level;
   unsigned step = 0; ///< of the trajectory or the scene

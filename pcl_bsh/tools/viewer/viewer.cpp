@@ -26,7 +26,7 @@
 namespace pcl_bsh::viewer {
 namespace {
 
-/// Between one tile of a site and the next, and until a picture is drawn that was left out: events are heard meanwhile.
+/// The pause between tiles of a site, and before a picture that was left out is drawn. Events are handled meanwhile.
 constexpr unsigned long later_milliseconds = 50;
 
 /// The trackball, with our keys instead of VTK's, and a click that picks.
@@ -296,7 +296,7 @@ void Viewer::drag(int x, int y)
   drawDragged();
 }
 
-/// The last place of all is drawn, though no event comes after it.
+/// Draws now, or soon by a timer. So the object's last place is drawn, though no event comes after it.
 void Viewer::drawDragged()
 {
   if (!hand_->draw([this] { interactor_->Render(); })) interactor_->CreateOneShotTimer(later_milliseconds);

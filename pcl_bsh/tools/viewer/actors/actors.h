@@ -20,7 +20,7 @@ namespace pcl_bsh::viewer {
 
 vtkSmartPointer<vtkMatrix4x4> matrixOf(const Eigen::Isometry3d& pose);
 
-/// Without lighting: colours are seen as they are.
+/// An actor of data, without lighting, so that colours are seen as they are.
 vtkSmartPointer<vtkActor> actorOf(vtkPolyData* data);
 void setData(vtkActor& actor, vtkPolyData& data); ///< of one that actorOf() made
 void setColor(vtkActor& actor, const Color& color);
@@ -28,7 +28,7 @@ void setColor(vtkActor& actor, const Color& color);
 /// A surface in one colour, lit, so that its shape is seen. @pre viewed.surface
 vtkSmartPointer<vtkActor> surfaceActor(const ViewedCloud& viewed, const Color& color);
 
-/// A colour of its own for each point or cell. @param color_of called with numbers up to `count`
+/// Gives each point or cell a colour of its own. @param color_of called with each number below `count`
 template <class ColorOf>
 void setColors(vtkDataSetAttributes& parts, vtkIdType count, const ColorOf& color_of)
 {
@@ -43,7 +43,7 @@ void setColors(vtkDataSetAttributes& parts, vtkIdType count, const ColorOf& colo
   parts.SetScalars(colors);
 }
 
-/// The data in another frame; itself where that is the same.
+/// The data moved by a pose; the data itself for the identity.
 vtkSmartPointer<vtkPolyData> posed(vtkPolyData* data, const Eigen::Isometry3d& pose);
 
 /// Parts of the picture beside the clouds, which cannot be picked.

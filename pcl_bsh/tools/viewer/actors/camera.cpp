@@ -26,7 +26,7 @@ ViewSide sideOf(Camera::Kind kind)
   return {Eigen::Vector3d(-0.55, -1.0, 0.7).normalized(), Eigen::Vector3d::UnitZ()};
 }
 
-/// Slanted, the same turned about z, from above; then the same from below.
+/// The slanted side and its turns about z, the top, and then all of these from below.
 std::vector<ViewSide> allSides()
 {
   constexpr int turns = 8;
@@ -43,7 +43,7 @@ std::vector<ViewSide> allSides()
   return sides;
 }
 
-/// Where the whole box is seen from.
+/// The gaze from a side that sees the whole box. @param tall half the picture's height at a distance of 1
 Gaze gazeAt(const ViewSide& side, const vtkBoundingBox& seen, double tall, double aspect, double free_width)
 {
   Gaze gaze;
@@ -62,7 +62,7 @@ Gaze gazeAt(const ViewSide& side, const vtkBoundingBox& seen, double tall, doubl
     away = std::max({away, std::abs(p.dot(gaze.right)) / (free_width * gaze.wide) + p.dot(gaze.toward),
                      std::abs(p.dot(gaze.up)) / gaze.tall + p.dot(gaze.toward)});
   }
-  // From a single place, any distance will do that the graphics card's floats tell from 0.
+  // For a box that is a single place, any distance will do that the graphics card's floats tell from 0.
   away = away > 0.0 ? std::max(away, 1e-6) : std::max(1.0, 1e-3 * focus.norm());
   gaze.at = focus + 1.1 * away * gaze.toward;
   return gaze;

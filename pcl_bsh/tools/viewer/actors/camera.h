@@ -14,8 +14,8 @@ namespace pcl_bsh::viewer {
 
 /// Puts the camera where it sees the whole box, or where it is given.
 /// @param aspect width of the picture divided by its height, of which the box may take `free_width`
-/// @param things of Camera::Kind::colliding: it looks from the side from which most of their marks are seen, slanted
-///   where no other side shows clearly more
+/// @param things for Camera::Kind::colliding, which looks from the side that sees most of their marks. It takes the
+///   slanted one where no other side shows clearly more
 void look(vtkRenderer& renderer, const Camera& camera, const vtkBoundingBox& seen, double aspect, double free_width,
           std::span<const Drawn> things = {});
 

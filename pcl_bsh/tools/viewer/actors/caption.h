@@ -36,7 +36,7 @@ private:
   int width_, height_;
 };
 
-/// As all words of a picture look.
+/// Gives words the font and the colour of all words of a picture.
 void setLook(vtkTextProperty& look, int size);
 
 /// Sets a background that hides most of the picture behind the words.

@@ -23,21 +23,21 @@
 
 namespace pcl_bsh::viewer {
 
-/// A cloud as it is drawn: what it is asked about, its parts, are points or triangles, which have colours and marks.
+/// A cloud as it is drawn. Its parts are points or triangles, which have colours and marks.
 class CloudActor {
 public:
   virtual ~CloudActor() = default;
   CloudActor(const CloudActor&) = delete;
   CloudActor& operator=(const CloudActor&) = delete;
 
-  /// Takes the points as they are now; paint and mark them anew. For points that move in their own frame: surfaces do
-  /// not.
+  /// Takes points that have moved in the cloud's own frame; they are to be painted and marked anew. Surfaces ignore it:
+  /// they do not deform.
   virtual void setPoints(const PointsView& /*points*/) {}
 
   /// @param colors one per part
   virtual void paint(const std::vector<Color>& colors) = 0;
 
-  /// One colour; of points darker for lower ones: a cloud all of one would look flat.
+  /// Paints all in one colour. Lower points are darker, because a cloud all of one colour would look flat.
   /// @param heights of the lowest and the highest; null: the cloud's own
   virtual void paint(const Color& color, const ColorRange* heights = nullptr) = 0;
 
@@ -45,27 +45,27 @@ public:
   /// @param flags empty: none
   virtual void mark(const std::vector<std::uint8_t>& flags, const std::vector<Color>& colors = {}) = 0;
 
-  virtual void setMoving(bool /*moving*/) {} ///< less is drawn then, where that is much
-  virtual void setVisible(bool visible) = 0; ///< of a picture that does not move
+  virtual void setMoving(bool /*moving*/) {} ///< large clouds are thinned while the picture moves
+  virtual void setVisible(bool visible) = 0; ///< while the picture does not move
   void place(const Eigen::Isometry3d& pose);
   void remove();              ///< for good
   void cut(const Cut& plane); ///< in the world frame; nothing is drawn on the side of its normal
 
   vtkPolyData& data() const { return *data_; }     ///< what is drawn
-  vtkPolyData& all() const { return *all_; }       ///< with points that are left out, as they lie far off
-  vtkPolyData& marked() const { return *marked_; } ///< what stands out
+  vtkPolyData& all() const { return *all_; }       ///< also points that are not drawn, as they lie far off
+  vtkPolyData& marked() const { return *marked_; } ///< the marked parts
   vtkIdType leftOut() const { return all().GetNumberOfPoints() - data().GetNumberOfPoints(); }
 
   /// Lets the pickers find the parts.
   virtual void offerTo(vtkPicker& points, vtkPicker& triangles) const = 0;
 
-  /// The part that a picked prop and the id of a point, or of a triangle's cell, are; none when they are not of this
-  /// cloud.
+  /// The part that was picked, by its prop and the id of a point or of a triangle's cell; none when the prop is not of
+  /// this cloud.
   virtual std::optional<std::uint32_t> partOf(const vtkProp* prop, vtkIdType id) const = 0;
 
 protected:
   explicit CloudActor(vtkRenderer& renderer) : renderer_(renderer) {}
-  void draw(vtkActor& actor); ///< from now on
+  void draw(vtkActor& actor); ///< adds it to the picture
 
   vtkSmartPointer<vtkPolyData> data_, all_, marked_;
 

@@ -22,7 +22,7 @@ struct Values {
   bool counts = false;
 };
 
-/// A few outliers should not take all colours for themselves: `share` of the values is left out at either end.
+/// The range of the values without the share `share` at either end: a few outliers should not take all colours.
 ColorRange rangeOf(std::vector<float> values, double share)
 {
   values.erase(std::remove_if(values.begin(), values.end(), [](float value) { return !std::isfinite(value); }),

@@ -8,10 +8,10 @@
 
 namespace pcl_bsh::viewer {
 
-/// The colour of what is free.
+/// The colour of a cloud's free parts.
 Color plainColor(const ViewedCloud& viewed);
 
-/// As the options say, or what fits best.
+/// The colouring that the options ask for, else the one that fits best.
 Coloring coloringOf(const ViewContent& content, const StepCollisions& collisions);
 
 /// Gives all clouds their colours, and shows the bar where these stand for values.

@@ -132,7 +132,7 @@ std::vector<OpenEdge> listOpenEdges(const ViewedCloud& viewed)
   return edges;
 }
 
-/// In front of all else: an open edge lies in a surface, or behind it.
+/// Adds open edges, in front of all else because they lie in a surface, or behind it.
 void addOpenEdges(PropGroup& group, const ViewedCloud& viewed, const Eigen::Isometry3d& pose)
 {
   vtkNew<vtkPoints> points;
@@ -211,7 +211,7 @@ void addContacts(PropGroup& group, const std::vector<Contact>& contacts, double 
   const auto actor = actorOf(arrows);
   vtkMapper& mapper = *actor->GetMapper();
   mapper.SetResolveCoincidentTopologyToPolygonOffset();
-  mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(0.0, -1e9); // before what they point into
+  mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(0.0, -1e9); // in front of what they point into
   group.add(actor);
 }
 

@@ -22,7 +22,7 @@ struct Extras {
 /// tested and pruned.
 void addExtras(PropGroup& group, const ViewContent& content, const Extras& extras, std::size_t step);
 
-/// How many edges of its triangles nothing closes; 0 of points.
+/// How many edges of a cloud's triangles are open; 0 of points.
 std::size_t openEdgesOf(const ViewedCloud& viewed);
 
 /// Adds a closest pair as a segment with a label.

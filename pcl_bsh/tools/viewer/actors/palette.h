@@ -18,7 +18,7 @@ inline constexpr Color ground = {24, 30, 38};
 inline constexpr Color text_color = {235, 238, 242};
 inline constexpr Color scan_color = {126, 140, 154};
 inline constexpr Color obstacle_color = {86, 180, 233};
-inline constexpr Color compared_color = {84, 92, 102};  ///< of clouds that distances lead to: colours are for these
+inline constexpr Color compared_color = {84, 92, 102};  ///< of clouds that distances lead to; colours are for distances
 inline constexpr Color colliding_color = {255, 106, 0}; ///< vermillion, brighter than in print
 inline constexpr Color undecided_color = {204, 121, 167};
 inline constexpr Color sparse_color = {0, 158, 115};
@@ -36,7 +36,7 @@ inline constexpr Color overlap_color = {255, 64, 64}; ///< of contacts whose gap
 inline constexpr Color open_edge_color = {255, 64, 64};
 inline constexpr Color path_color = {204, 121, 167};
 
-/// By SphereFate.
+/// Colours by SphereFate.
 inline constexpr std::array<Color, 4> fate_colors = {{{120, 128, 138}, {86, 180, 233}, {0, 158, 115}, {255, 106, 0}}};
 
 inline std::array<double, 3> fractions(const Color& color)
@@ -44,7 +44,7 @@ inline std::array<double, 3> fractions(const Color& color)
   return {color[0] / 255.0, color[1] / 255.0, color[2] / 255.0};
 }
 
-/// A color on a way through some, from 0 to 1.
+/// The colour after a share, 0 to 1, of the way through `stops`.
 template <std::size_t N>
 std::array<double, 3> between(const std::array<std::array<double, 3>, N>& stops, double share_of_way)
 {
@@ -56,8 +56,8 @@ std::array<double, 3> between(const std::array<std::array<double, 3>, N>& stops,
   return c;
 }
 
-/// Dark to bright through violet, teal and yellow; `reversed`: bright to dark. Where `low` is below 0, so are the
-/// colours of what is above it, and depths go from pale orange to dark red.
+/// Dark to bright through violet, teal and yellow; `reversed`: bright to dark. Where `low` is below 0, these
+/// colours begin at 0, and values below go from pale orange to dark red at `low`.
 inline vtkSmartPointer<vtkLookupTable> colorTable(double low, double high, bool reversed)
 {
   constexpr std::array<std::array<double, 3>, 6> stops = {

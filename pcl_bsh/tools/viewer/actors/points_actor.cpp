@@ -73,17 +73,17 @@ float sizeFor(std::size_t count)
   return count > 300'000 ? 1.5f : count > 30'000 ? 2.0f : 3.0f;
 }
 
-/// Points of one size; few of them only while the picture moves. All and few are two actors, of which one is seen: what
-/// the graphics card holds of the many stays there.
+/// Points of one size. While the picture moves, only a few are drawn. All and few have an actor each, of which one is
+/// visible, so that the graphics card keeps the data of all.
 class PointLayer {
 public:
-  /// @param in_front drawn before other points of the same place
+  /// @param in_front drawn in front of other points of the same place
   PointLayer(float size, bool in_front)
   : data_(vtkSmartPointer<vtkPolyData>::New()),
     all_(actorOf(data_)),
     few_(actorOf(data_))
   {
-    // VTK moves all points by -8 once any are to be moved at all: the others stay where they are.
+    // VTK shifts all points by -8 once any are to be shifted at all. The 8 undoes that for points not in front.
     vtkMapper::SetResolveCoincidentTopologyToPolygonOffset();
     few_->SetProperty(all_->GetProperty());
     all_->GetProperty()->SetPointSize(size);
@@ -101,7 +101,7 @@ public:
     if (few_->GetVisibility() != 0) setMoving(true);
   }
 
-  vtkActor& all() const { return *all_; } ///< what one picks: nothing moves then
+  vtkActor& all() const { return *all_; } ///< is picked, as nothing moves then
   vtkActor& few() const { return *few_; }
 
   void setMoving(bool moving)

@@ -24,7 +24,7 @@ inline std::string groupedCount(std::size_t number, const std::string& one, cons
   return grouped(number) + ' ' + nounOf(number, one, many);
 }
 
-/// Six digits at most.
+/// A number in six digits at most.
 inline std::string shortest(double value)
 {
   std::ostringstream text;

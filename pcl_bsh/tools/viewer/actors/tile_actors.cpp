@@ -28,8 +28,8 @@ TileActors::TileActors(const SiteContent& site, vtkRenderer& renderer, const Clo
   alike_.all_distances = coloring == Coloring::distance && !site.allDistances(0).empty();
 }
 
-/// The camera sees a region within its four sides, before it, and not cut away. A box behind it may have a corner on
-/// the positive side of each of the four.
+/// The camera sees what lies within its four sides, in front of it, and is not cut away. The plane in front is needed,
+/// because a box behind the camera may have a corner on the positive side of each of the four.
 Eye TileActors::eye() const
 {
   vtkCamera& camera = *renderer_.GetActiveCamera();

@@ -12,7 +12,7 @@
 namespace pcl_bsh::viewer {
 namespace {
 
-/// The flagged triangles, each with corners of its own: bounds are theirs alone.
+/// The flagged triangles, each with corners of its own, so that bounds are those of the flagged ones alone.
 vtkSmartPointer<vtkPolyData> someOf(vtkPolyData& data, const std::vector<std::uint8_t>& flags)
 {
   vtkNew<vtkPoints> points;

@@ -12,7 +12,7 @@ namespace pcl_bsh::viewer {
 
 namespace {
 
-/// Letters have one size whatever the picture's: a small one gives them a larger share.
+/// The bar's share of a picture's width. Letters have one size in pixels, so a small picture gives them a larger share.
 double shareOf(int width)
 {
   constexpr double usual = 0.115, pixels = 120.0, most = 0.4;

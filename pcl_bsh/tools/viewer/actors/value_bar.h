@@ -17,7 +17,7 @@ namespace pcl_bsh::viewer {
 /// three at least.
 std::string labelFormat(double low, double high, int labels);
 
-/// Which colour stands for which value, with the unit, at the right edge.
+/// A bar at the right edge that shows which colour stands for which value, with the unit.
 class ValueBar {
 public:
   ValueBar(vtkRenderer& renderer, int width); ///< of the picture, in pixels

@@ -20,7 +20,7 @@
 namespace pcl_bsh::viewer {
 namespace {
 
-/// A share of the picture, or in pixels where letters would be too small. Above it VTK draws the title.
+/// The chart's place: a share of the picture, but so many pixels at least that letters fit. VTK draws the title above.
 vtkRectf placeOf(int width, int height)
 {
   const double wide = std::min(0.5 * width, std::max(0.3 * width, 260.0));

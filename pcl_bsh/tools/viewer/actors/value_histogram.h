@@ -20,7 +20,7 @@ public:
   ValueHistogram(vtkRenderer& renderer, int width, int height); ///< of the picture, in pixels
 
   /// @param distances one per part, NaN where a part has none
-  /// @param colors whose range ends where the axis does
+  /// @param colors their range ends where the axis ends
   void show(const std::vector<double>& distances, vtkLookupTable& colors, const std::string& axis_title,
             const ViewContent& content);
   void hide() { actor_->VisibilityOff(); }

@@ -12,7 +12,7 @@
 namespace pcl_bsh::viewer {
 
 /// Returns places of a drawing, about evenly: points or, for triangles, places all over them, about `step` from the
-/// next. Returns a few hundred thousand at most: of more places, one in so many.
+/// next. Returns a few hundred thousand at most: where there are more, every n-th.
 /// @param left_out places in the world that are not drawn; null: none
 std::vector<Eigen::Vector3d> placesOf(vtkPolyData& drawn, const Eigen::Isometry3d& pose, double step,
                                       const std::function<bool(const Eigen::Vector3d&)>& left_out = nullptr);

@@ -24,7 +24,7 @@
 namespace pcl_bsh::viewer {
 namespace {
 
-/// Shows a cloud that is loaded. One with faces is a surface.
+/// Makes a viewed cloud of a loaded one. A cloud with faces is a surface.
 ViewedCloud viewedOf(const io::Obstacle& read, const std::filesystem::path& file, ViewedCloud::Role role,
                      unsigned threads)
 {
@@ -54,7 +54,7 @@ ViewedCloud load(const std::filesystem::path& file, ViewedCloud::Role role, cons
   return viewed;
 }
 
-/// A line for each obstacle; of many, for those that something collides with, as many as there is room for.
+/// A line for each obstacle. If there are more than most_named, those that collide come first, and the rest is counted.
 std::string linesOf(std::vector<NamedCollisions> all, const std::string& unit)
 {
   const std::size_t told = std::min(all.size(), most_named);
@@ -256,7 +256,7 @@ std::vector<std::array<Eigen::Vector3d, 2>> CloudsContent::beams() const
   if (options_.beams == 0) return lines;
   const PointsView& view = scan().points();
   const ScanBeams beams =
-      scansOf(view, recordFields(scan().cloud->fields), scan().file.string(), origins_).front(); // of the first
+      scansOf(view, recordFields(scan().cloud->fields), scan().file.string(), origins_).front(); // of the first scan
   const std::size_t step = std::max<std::size_t>(beams.returns.size() / options_.beams, 1);
   for (std::size_t i = 0; i < beams.returns.size(); i += step) {
     const Point3 end = view.point(beams.returns.record(i));
@@ -284,7 +284,7 @@ std::vector<float> CloudsContent::distances(std::size_t step) const
 {
   if (!options_.question.clearance) return FieldContent::distances(step);
   std::vector<float> distances(scan().parts(), std::numeric_limits<float>::quiet_NaN());
-  Question question; // along a path of one pose, which tells floats
+  Question question; // along a path of one pose: its distances are floats
   question.wanted.distances = true;
   for (std::size_t other = 1; other < viewed_clouds_.size(); ++other) {
     question.max_distance = options_.range.value_or(*clearanceOf(other));

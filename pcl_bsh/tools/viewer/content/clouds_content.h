@@ -23,19 +23,19 @@ public:
   Eigen::Isometry3d poseOf(std::size_t cloud, std::size_t step) const override;
   bool moves(std::size_t cloud) const override { return cloud == model_ || (choiceOf(cloud) && steps() > 1); }
 
-  /// Asked of the queries; without a clearance, read from the scan's field `collision`, if any.
+  /// The collisions that queries find; without a clearance, those of the scan's field `collision`, if any.
   StepCollisions collisions(std::size_t step) const override;
   std::string heading(const StepCollisions& collisions, std::size_t step) const override;
   MotionPaths paths(std::size_t step) const override;
 
-  /// Or the scan's field `distance`.
+  /// The distances that queries find; without a clearance, the scan's field `distance`.
   std::vector<float> distances(std::size_t step) const override;
 
-  /// Without a clearance: to the nearest point of any obstacle. Without obstacles the scan's field `distance`, where it
-  /// holds those of free points.
+  /// Without a clearance, distances to the nearest point of any obstacle. Without obstacles the scan's field
+  /// `distance`, where it holds those of free points. With a clearance, none.
   std::vector<double> allDistances(std::size_t step) const override;
 
-  /// Or the scan's field `first_pose`. Asked once, then kept.
+  /// The first poses that queries find; without a clearance, the scan's field `first_pose`. Asked once, then kept.
   std::vector<std::int32_t> firstPoses() const override;
 
   /// For the scan's parts: the distance to the nearest point of any obstacle, and the first pose.
@@ -67,7 +67,7 @@ private:
   mutable std::vector<Shape> shapes_;    ///< of the viewed clouds, with what is kept of them
   mutable std::set<std::string> hollow_; ///< warnings that were told
   ScanOrigins origins_;                  ///< of the scan
-  mutable Shape seen_from_;              ///< the scan, as one that has scanners
+  mutable Shape seen_from_;              ///< the scan with its fields, for questions with `seen`
   std::optional<std::size_t> model_;
   std::vector<Eigen::Isometry3d> poses_;
   mutable std::optional<std::vector<std::int32_t>> first_poses_;

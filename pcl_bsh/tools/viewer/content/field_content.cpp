@@ -10,7 +10,7 @@
 namespace pcl_bsh::viewer {
 namespace {
 
-/// As the field `collision` has it: any other number is a collision.
+/// The verdict for a value of the field `collision`: any number that stands for no other verdict is a collision.
 Verdict verdictOf(float value)
 {
   for (const Verdict verdict : {Verdict::free, Verdict::undecided, Verdict::sparse, Verdict::unseen})

@@ -21,8 +21,8 @@ public:
   MotionPaths paths(std::size_t /*step*/) const override { return {}; }
   std::vector<float> distances(std::size_t step) const override;
 
-  /// Returns distances where the field holds those of free points, too. Along a path it holds those of points that
-  /// collide.
+  /// The field's distances if it holds those of free points, too; else none. A result along a path holds only those of
+  /// points that collide.
   std::vector<double> allDistances(std::size_t step) const override;
   std::vector<std::int32_t> firstPoses() const override;
 
@@ -30,7 +30,7 @@ protected:
   using ViewContent::ViewContent;
 };
 
-/// Counts what is not free of the scan.
+/// Counts the verdicts of the scan's parts, except free ones.
 void countVerdicts(StepCollisions& found);
 
 } // namespace pcl_bsh::viewer

@@ -42,7 +42,7 @@ io::SceneFile readScene(const Options& options)
   return file;
 }
 
-/// Normals point to what can move.
+/// The contacts of bodies. Normals point to what can move.
 std::vector<Contact> contactsOf(const SceneBodies& bodies, const Scene& scene)
 {
   std::vector<Contact> all;
@@ -98,7 +98,7 @@ public:
       copy.motion = NoMotion();
       copy.pose = from.poses[i];
       for (std::size_t part = 0; part < copy.parts.size(); ++part) copy.parts[part].pose = from.parts[i][part];
-      copy.fixed = copy.fixed || (!file.bodies && i != object); // pairs of others are not asked for
+      copy.fixed = copy.fixed || (!file.bodies && i != object); // pairs of others are not tested
       scene_.add(std::move(copy));
     }
     io::setRules(scene_, file.rules);
@@ -136,7 +136,7 @@ public:
   }
 
 private:
-  static constexpr double seconds_of_event = 1.0 / 60; ///< that pass among bodies
+  static constexpr double seconds_of_event = 1.0 / 60; ///< that pass for bodies with each event
 
   ObjectId object_;
   Scene scene_;
@@ -186,8 +186,7 @@ private:
   io::SceneFile file_;
   std::unique_ptr<io::SceneWorld> running_scene_; ///< moves the objects from step to step, and reports nothing else
   std::unique_ptr<SceneBodies> bodies_;           ///< of the running scene; null where it has none
-  std::unique_ptr<Scene>
-      query_scene_; ///< the same objects without motions: placed as at the step shown, and asked what collides
+  std::unique_ptr<Scene> query_scene_;      ///< the objects without motions, at the step shown: asked what collides
   std::vector<Place> places_;               ///< of each viewed cloud
   std::vector<std::size_t> first_cloud_;    ///< of each object
   std::size_t points_ = 0;                  ///< finite, of all clouds

@@ -82,7 +82,7 @@ SiteContent::SiteContent(const Options& options) : FieldContent(options), site_(
   if (points > options.budget)
     throw cli::UsageError("--budget: " + counted(options.budget, "point") + ": the overview alone has " +
                           std::to_string(points) + ": give more");
-  tile_points_ = points == site_.points ? 0 : options.budget - points; // an overview of all points is all there is
+  tile_points_ = points == site_.points ? 0 : options.budget - points; // an overview of all points needs no tiles
   viewed_clouds_.push_back(std::move(overview));
   step.done(counted(points, "point"));
   std::size_t large = 0;

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double nearer_where_held = 0.8;
 
-/// Whether some of the box may lie on the positive side of all planes: beyond them, as sides of the eye's pyramid touch
-/// the boxes behind an eye where these meet.
+/// Whether some of the box may lie on the positive side of all planes, not only on them: where the sides of the eye's
+/// pyramid meet, they touch boxes behind the eye.
 bool isSeen(const site::Bounds& box, const Eye& eye)
 {
   return std::all_of(eye.planes.begin(), eye.planes.end(), [&box](const std::array<double, 4>& plane) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which tiles of a site are worth their points from where one looks; not how they are read or drawn.
+// Chooses the tiles of a site that are drawn for an eye, within a budget of points. Does not read or draw them.
 //
 //   TileChoice choice(site, budget);
 //   choice.look(eye);

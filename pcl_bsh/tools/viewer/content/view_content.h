@@ -46,7 +46,7 @@ struct StepCollisions {
   std::size_t sparse = 0;                  ///< parts not scanned densely enough
   std::size_t unseen = 0;                  ///< free parts that no scanner saw
   std::optional<ClosestPair> closest;
-  std::vector<NamedCollisions> named; ///< of each obstacle that has a name; those of each that collides are marked
+  std::vector<NamedCollisions> named; ///< of each obstacle with a name; closest pairs of colliding ones are drawn
 };
 
 /// The poses that clouds take one after another, each path drawn as a line.
@@ -66,11 +66,11 @@ struct ColorRange {
   double low = 0.0, high = 1.0;
 };
 
-/// How clouds are coloured that are parts of a whole: alike.
+/// The colours that all clouds share which are parts of one whole.
 struct SharedColors {
   ColorRange heights;               ///< which plain colours are shaded by
   std::optional<ColorRange> values; ///< none where no value is known yet
-  bool all_distances = false;       ///< free points have some, too
+  bool all_distances = false;       ///< free points have distances, too
 };
 
 class SiteContent;
@@ -82,10 +82,10 @@ public:
 
   virtual const std::string& name() const = 0;       ///< of the object
   virtual const Eigen::Isometry3d& pose() const = 0; ///< T_world_object
-  /// As far as the response lets it. @throws std::invalid_argument for a way that is no motion
+  /// Moves it to a pose, as far as the response lets it. @throws std::invalid_argument for a way that is no motion
   virtual const DragStep& moveTo(const Eigen::Isometry3d& T_world_object) = 0;
   virtual void release() = 0;
-  virtual std::string nameOfNearest() const = 0; ///< to it; empty where none is
+  virtual std::string nameOfNearest() const = 0; ///< name of the object nearest to it; empty: none
 };
 
 /// Clouds and their poses at a number of steps; the first cloud is the one asked about: its points, or its triangles.
@@ -101,11 +101,12 @@ public:
 
   virtual std::string name() const = 0;     ///< of the window
   virtual std::size_t steps() const = 0;    ///< at least one
-  virtual const char* stepName() const = 0; ///< what steps are
+  virtual const char* stepName() const = 0; ///< the word for a step
   virtual Eigen::Isometry3d poseOf(std::size_t cloud, std::size_t step) const = 0;
   virtual bool moves(std::size_t cloud) const = 0;
 
-  /// Points that move in their own frame stand where they are at this step, once its collisions() were asked for.
+  /// Whether points move in their cloud's own frame. They are where they belong at a step once its collisions() were
+  /// asked for.
   virtual bool deforms(std::size_t /*cloud*/) const { return false; }
   virtual StepCollisions collisions(std::size_t step) const = 0;
 
@@ -131,10 +132,10 @@ public:
   /// Beams of the scan's scanner, from where it stood to some of its points.
   virtual std::vector<std::array<Eigen::Vector3d, 2>> beams() const { return {}; }
 
-  /// The noun of so many parts, of which values are.
+  /// The noun for `count` of the parts that have values.
   virtual std::string partsName(std::size_t count) const { return nounOf(count, scan().partName()); }
-  virtual const SharedColors* sharedColors() const { return nullptr; } ///< where this is a part of a whole
-  virtual const SiteContent* site() const { return nullptr; }          ///< where there are tiles to draw, too
+  virtual const SharedColors* sharedColors() const { return nullptr; } ///< null unless part of a whole
+  virtual const SiteContent* site() const { return nullptr; }          ///< null unless tiles are drawn, too
 
 protected:
   explicit ViewContent(Options options) : options_(std::move(options)) {}

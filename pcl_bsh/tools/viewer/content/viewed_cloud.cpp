@@ -17,7 +17,7 @@ const pcl::PCLPointField* find(const pcl::PCLPointCloud2& cloud, const std::stri
   return nullptr;
 }
 
-/// One value of each record.
+/// Calls use(record, value) with a field's value of each record.
 template <class T, class Use>
 void eachValue(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& field, const Use& use)
 {

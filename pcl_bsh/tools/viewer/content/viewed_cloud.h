@@ -33,7 +33,7 @@ struct ViewedCloud {
   std::optional<io::Obstacle> surface;              ///< where it has faces: these are drawn, and asked about
   std::vector<io::FaceValues> face_values;          ///< as they were read; none where fields are not shown
   std::shared_ptr<SphereHierarchy> hierarchy;       ///< null where nothing is asked
-  PointsView records;                               ///< then the points
+  PointsView records;                               ///< the points, where the hierarchy is null
 
   const PointsView& points() const { return hierarchy ? hierarchy->view() : records; } ///< of a surface, its triangles
 
