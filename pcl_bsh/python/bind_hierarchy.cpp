@@ -149,7 +149,7 @@ Examples
 2.0
 )";
 
-/// For Python's collector: an array may hold the hierarchy that keeps it.
+/// tp_traverse, for Python's collector: an array may refer to the hierarchy that keeps it.
 int traverse(PyObject* self, visitproc visit, void* arg)
 {
   Py_VISIT(Py_TYPE(self));
@@ -157,8 +157,8 @@ int traverse(PyObject* self, visitproc visit, void* arg)
   if (!instance->simple_layout && !instance->nonsimple.status) return 0; // not made yet
   const auto held = instance->get_value_and_holder();
   if (!held.holder_constructed() || changesBegun() > 0) return 0;
-  // A scene may have it, too. New holders are made with the interpreter's lock, so none comes while the collector
-  // works.
+  // A scene may hold it, too, and keeps it alive then. New holders are made with the interpreter's lock, so none comes
+  // while the collector works.
   const auto& hierarchy = held.holder<std::shared_ptr<Cloud>>();
   if (hierarchy.use_count() != 1) return 0;
   const KeptArrays* const kept = arraysOf(hierarchy->view());

@@ -98,7 +98,7 @@ std::optional<std::pair<double, double>> endsOf(const std::optional<Interval>& a
   return area ? std::optional(std::pair{area->lower, area->upper}) : std::nullopt;
 }
 
-/// Calls with the number of an obstacle and its value, for each that a mapping names.
+/// Calls use(number, value) for each obstacle that a mapping names.
 /// @throws InvalidInput for a name that no obstacle has
 template <class Use>
 void forEachNamed(const char* argument, const py::object& values, const Names& names, const Use& use)

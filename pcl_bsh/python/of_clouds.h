@@ -43,7 +43,7 @@ private:
   const Make make_;
   mutable std::mutex mutex_;
   mutable std::shared_ptr<const Made> made_;
-  mutable std::size_t changes_ = 0; ///< of the clouds, when it was made
+  mutable std::size_t changes_ = 0; ///< sum of the clouds' changes() when it was made
 };
 
 } // namespace pcl_bsh::python

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The cost of accuracy in time, on two clouds. A table, a plot, and which setting to choose.
+// Measures what accuracy costs in time, on two clouds: a table, a plot, and which setting to choose.
 #include <pcl_bsh/tools/accuracy/program.h>
 
 int main(int argc, char** argv)

@@ -12,7 +12,7 @@
 namespace pcl_bsh {
 namespace {
 
-constexpr double most_piece = 32.0;       // longer straights have loose boxes
+constexpr double most_piece = 32.0;       // the box of a longer straight is loose
 constexpr double most_pieces = 4'000'000; // 128,000 km of straights
 
 [[noreturn]] void refuseAxis(const std::string& what, const std::string& wrong, const std::string& remedy, double value)

@@ -58,7 +58,7 @@ public:
   const std::string& name() const { return description_.name; }
   /// Its polygon before it widens.
   const std::vector<SectionPoint>& corners() const { return description_.corners; }
-  /// Whether a chainage is in one of its ranges.
+  /// Whether it counts at a chainage: in one of its ranges or, without ranges, everywhere.
   bool countsAt(double chainage) const;
   /// Whether a table or a vehicle widens it.
   bool widens() const;

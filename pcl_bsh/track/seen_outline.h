@@ -64,7 +64,7 @@ public:
 
   std::size_t rows() const { return rows_; } ///< of cells along the axis
   std::size_t columns(std::size_t envelope) const { return outlines_[envelope].columns.size(); } ///< of cells round it
-  /** Whether a beam did. */ bool isCrossed(std::size_t envelope, std::size_t row, std::size_t column) const
+  /** Whether a beam crossed it. */ bool isCrossed(std::size_t envelope, std::size_t row, std::size_t column) const
   {
     return crossed_[cellOf(outlines_[envelope], row, column)];
   }

@@ -97,10 +97,10 @@ MovedView movedView(const PointsView& before, PointsInput input);
 /// A view for the time of a call: nothing is locked. `kept` has what must live as long as the view.
 PointsView viewForCall(const std::string& name, const py::object& xyz, py::array& kept);
 
-/// (4, 4) or (3, 4), anything that NumPy makes an array of; None: the identity.
+/// The pose in (4, 4) or (3, 4), an array or anything that NumPy makes one of; None: the identity.
 Eigen::Isometry3d poseOf(const std::string& name, const py::object& pose);
 
-/// (m, 4, 4) or (m, 3, 4).
+/// The poses in (m, 4, 4) or (m, 3, 4).
 std::vector<Eigen::Isometry3d> posesOf(const std::string& name, const py::object& poses);
 
 Point3 point3Of(const std::string& name, const py::object& point);
@@ -115,10 +115,10 @@ Accuracy accuracyOf(const py::object& accuracy);
 /// The values as (n,) float32, n being `count`. The array is not locked.
 py::array_t<float> floatsOf(const std::string& name, const py::object& values, std::size_t count);
 
-/// Rows of `columns` numbers, one after the other; of one column (n,).
+/// The numbers of an array (n, columns), row after row; for one column, of an array (n,).
 std::vector<double> rowsOf(const std::string& name, const py::object& values, py::ssize_t columns);
 
-/// Rows of `columns` record numbers, each in [0, 2^32).
+/// The records in an array (n, columns), row after row, each in [0, 2^32); for one column, in an array (n,).
 std::vector<std::uint32_t> recordsOf(const std::string& name, const py::object& values, py::ssize_t columns);
 
 } // namespace pcl_bsh::python

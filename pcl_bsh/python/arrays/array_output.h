@@ -72,7 +72,7 @@ auto column(std::vector<T> Object::*values)
   return [values](const py::object& self) { return arrayIn(self, self.cast<const Object&>().*values); };
 }
 
-/// (pairs, 2)
+/// An array (pairs, 2) of the records a and b.
 inline py::array_t<std::int32_t> arrayFrom(const std::vector<PointPair>& pairs)
 {
   py::array_t<std::int32_t> array({pairs.size(), std::size_t{2}});
@@ -91,7 +91,7 @@ inline py::dict dictOf(const RefitReport& report)
                   "looseness"_a = report.looseness);
 }
 
-/// (4, 4)
+/// A pose as an array (4, 4).
 inline py::array_t<double> arrayOf(const Eigen::Isometry3d& pose)
 {
   py::array_t<double> array({4, 4});

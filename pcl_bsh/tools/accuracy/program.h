@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All of pcl_bsh_accuracy but its main().
+// All of pcl_bsh_accuracy except its main().
 #pragma once
 
 #include "study.h"

@@ -34,7 +34,8 @@ extern template CLI::Validator number(std::string, std::function<bool(int)>);
 extern template CLI::Validator number(std::string, std::function<bool(unsigned)>);
 extern template CLI::Validator number(std::string, std::function<bool(std::uint64_t)>);
 
-/// For transform(): a number with K, M or G behind it, each `unit` times the last.
+/// For transform(): a whole number, with K, M or G behind it or not, each `unit` times the one before; refuses less
+/// than `least`.
 CLI::Validator amount(std::uint64_t unit, std::uint64_t least, std::string remedy);
 
 inline constexpr auto give_length = "give a length in the clouds' unit";

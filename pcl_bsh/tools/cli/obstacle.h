@@ -19,7 +19,7 @@ namespace pcl_bsh::cli {
 
 /// Reads an obstacle, as a step of the program.
 /// @param seconds the time that it took is added
-/// @throws as io::readObstacle() does, whose last arguments these are
+/// @param reading, facts, threads as io::readObstacle() takes them. @throws as io::readObstacle() does
 io::Obstacle loadObstacle(const std::filesystem::path& path, const io::SurfaceSettings& settings, double& seconds,
                           const io::ReadSettings& reading, io::CloudFacts* facts, unsigned threads);
 

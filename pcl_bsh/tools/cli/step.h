@@ -14,7 +14,7 @@ class Step {
 public:
   explicit Step(const std::string& what);
 
-  /// A step that fails leaves its line to the error message.
+  /// A step that fails ends its line, so that the error message has its own.
   ~Step();
 
   Step(const Step&) = delete;

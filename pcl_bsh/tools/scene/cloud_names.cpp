@@ -10,7 +10,7 @@
 namespace pcl_bsh::cli {
 namespace {
 
-/// The beginning of a long name: a file's name has 255 bytes at most.
+/// A name with '_' in place of odd letters, and its beginning if it is long: a file's name has 255 bytes at most.
 std::string allowed(std::string text)
 {
   constexpr std::size_t longest = 100;

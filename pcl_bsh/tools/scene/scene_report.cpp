@@ -18,7 +18,7 @@ std::size_t sumOf(const std::vector<FlaggedPart>& parts, std::size_t FlaggedPart
   return sum;
 }
 
-/// Pairs of different objects, or of parts of one.
+/// How many pairs are undecided. @param of_one pairs of parts of one object, not of two objects
 std::size_t undecidedPairs(const SceneResult& result, bool of_one)
 {
   return static_cast<std::size_t>(std::count_if(result.undecided.begin(), result.undecided.end(),

@@ -54,7 +54,7 @@ public:
   void letGo();
   void showStep(std::size_t step);
   void setMoving(bool moving);
-  void loadTile(); ///< one more of a site, while nothing moves
+  void loadTile(); ///< draws one more tile of a site, while nothing moves
   const std::string& picked() const { return picked_; }
   const std::filesystem::path& saved() const { return saved_; } ///< the last picture that was saved
 

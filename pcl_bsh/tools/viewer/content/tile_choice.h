@@ -31,7 +31,7 @@ public:
   /// @param budget points that held tiles have together at most; a tile of more is never wanted
   TileChoice(const site::Site& site, std::uint64_t budget);
 
-  /// Chooses anew.
+  /// Chooses the wanted tiles anew.
   void look(const Eye& eye);
 
   std::vector<std::size_t> superfluous() const; ///< held, not wanted: to be dropped before another is held
