@@ -26,7 +26,7 @@ struct GaugeRequest {
 /// The answers of gauge(), in the order of the view's points.
 struct GaugedPoints {
   std::vector<PlaceState> state;
-  std::vector<AxisPlace> place;        ///< the place that has the clearance; zeros where it has no place
+  std::vector<AxisPlace> place;        ///< the one that has the clearance, else the best; zeros: none
   std::vector<double> clearance;       ///< the smallest of all envelopes, negative inside; NaN where none counts
   std::vector<std::int32_t> envelope;  ///< number of the one with that clearance, of equal ones the first; -1: none
   std::vector<double> each;            ///< point by point the clearance of each envelope; NaN where it does not count

@@ -90,8 +90,8 @@ struct MovedView {
 /// The owner of the arrays of a view of viewOfPoints() or viewOfTriangles(); else null.
 const KeptArrays* arraysOf(const PointsView& view);
 
-/// The points of `before` at new places. They keep their subset, the uncertainty of all points, and the radii and
-/// uncertainties that `input` lacks. @param input without subset and uncertainty of all points; for triangles vertices
+/// The points of `before` at new places. They keep their subset, the uncertainties of all points and of the pose, and
+/// the radii and uncertainties that `input` lacks. @param input has neither of the first three; for triangles vertices
 MovedView movedView(const PointsView& before, PointsInput input);
 
 /// A view for the time of a call: nothing is locked. `kept` has what must live as long as the view.

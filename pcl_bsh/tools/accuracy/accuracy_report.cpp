@@ -123,7 +123,7 @@ const Measurement* bestWithin(const Study& study, const std::string& query, doub
   const Measurement* best = nullptr;
   for (const Measurement& m : study.measurements) {
     if (m.query != query || !m.certified || m.seconds.median > seconds) continue;
-    if (m.knob == "tolerance" && query != "distance") continue; // undecides nothing, but asks another question
+    if (m.knob == "tolerance" && query != "distance") continue; // leaves nothing undecided, but asks another question
     if (!best || m.certified_error < best->certified_error ||
         (m.certified_error == best->certified_error && m.seconds.median < best->seconds.median))
       best = &m;

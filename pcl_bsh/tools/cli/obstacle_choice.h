@@ -53,7 +53,7 @@ struct SeveralObstacles {
   std::vector<std::string> ignored;      ///< pairs that are not compared, as typed
   std::vector<std::string> only;         ///< patterns of names that are asked about; empty: all are
   bool between = false;                  ///< whether they are compared with each other
-  bool overlap = false;                  ///< whether it is told how much of one lies within another
+  bool overlap = false;                  ///< whether the area of one inside another is told
 
   void addTo(CLI::App& app);
   void addObstaclesTo(CLI::App& app); ///< --obstacle alone

@@ -26,7 +26,7 @@ void setLook(vtkTextProperty& look, int size)
 {
   look.SetFontSize(size);
   look.SetFontFamilyToArial();
-  look.BoldOff(); // VTK makes a bar's words bold
+  look.BoldOff(); // a bar's words are bold by default
   look.ItalicOff();
   look.ShadowOff();
   look.SetLineSpacing(1.25);
