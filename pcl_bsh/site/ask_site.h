@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A question about a site and a thing in memory, or another site, with the answer of one hierarchy over all points of
-// each.
+// Asks a question about a site and an obstacle, which is in memory or another site. The answer is that of one
+// hierarchy over all points of each.
 //
 //   site::Site valley = site::readSite("valley");
 //   Question question;
@@ -17,7 +17,7 @@
 //
 // In an MPI job (mpirun -n 4 ...), all ranks ask the same: the tiles are dealt to them, and each gets the whole answer.
 // Receivers are called on the rank that has the tile. An accuracy promises for the site what it promises for one cloud.
-// A level, a number of pairs or a time is that of each tile. Threads are those of each process.
+// A level, a number of pairs or a time applies to each tile, a number of threads to each process.
 //
 // Unseen points of an obstacle (`seen`) are those of one SeenSpace over all points of the site. All tiles that have
 // beams near the directions of the obstacle are read once. Memory keeps the beams that look at the obstacle on its way.
@@ -36,8 +36,8 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::site {
 
-/// The answers about tiles, by their numbers, from which a question goes on after it was ended. Only the query
-/// understands their numbers.
+/// Stores the answer about each tile as a list of numbers, so that a question that was ended can go on. Only the query
+/// understands the numbers.
 class TileAnswers {
 public:
   virtual ~TileAnswers() = default;
@@ -78,7 +78,7 @@ struct TileCost {
 /// The tiles that a question has read of a site, in one visit or in several.
 struct TilesRead {
   std::uint64_t tiles = 0;     ///< of the site
-  std::uint64_t needed = 0;    ///< those that could matter before any was read: of the visit that needed most
+  std::uint64_t needed = 0;    ///< tiles that could matter before any was read, in the visit with the most
   std::uint64_t read = 0;      ///< by all ranks
   std::vector<TileCost> costs; ///< of all ranks, by their places, visit by visit
 
@@ -86,7 +86,7 @@ struct TilesRead {
   TilesRead& operator+=(const TilesRead& visit);
 };
 
-/// Two points: of the site, and of the obstacle, whose source is 0 where it is in memory.
+/// A point of the site, and a point of the obstacle. The source of the latter is 0 where the obstacle is in memory.
 struct SitePair {
   SitePoint a, b;
 };
@@ -98,7 +98,7 @@ struct SiteAnswer : Answer {
   /// point of the obstacle. Along a path, `closest` is the distance of points that collide or are undecided, and has no
   /// pair.
   std::optional<SitePair> pair;
-  std::optional<std::size_t> first_pose; ///< along a path, at which anything may collide
+  std::optional<std::size_t> first_pose; ///< along a path, the first at which anything may collide
   std::uint64_t obstacle_colliding = 0;  ///< points, or triangles, of the obstacle
   std::uint64_t obstacle_undecided = 0;
   TilesRead tiles;
@@ -107,8 +107,8 @@ struct SiteAnswer : Answer {
   std::uint64_t beams_kept = 0; ///< with `seen`, in memory
 };
 
-/// The number of this process among those of an MPI job, from 0, and how many there are; 0 and 1 without mpirun. MPI is
-/// begun where the process has not done so, and ends with it.
+/// rankHere() returns the number of this process in its MPI job, from 0, and ranks() the number of processes; 0 and 1
+/// without mpirun. They start MPI where the process has not done so; MPI ends with the process.
 int rankHere();
 int ranks();
 
@@ -116,10 +116,11 @@ int ranks();
 [[noreturn]] void endAllRanks();
 
 /// The answer of one hierarchy over the site. Progress is reported after each tile by the rank that had it: the share
-/// of the tiles that may have to be asked about, in the order in which they are dealt to all ranks. Any collision ends
-/// with the first tile that has one; the smallest distance with the tiles that are farther.
-/// @throws InvalidInput as ask() and check() do; files::FileError for a tile that is not what the site says, and for an
-///   uncertainty that site.json does not tell of; Cancelled
+/// of the tiles that may have to be asked about, in the order in which they are dealt to all ranks. The search for any
+/// collision ends with the first tile that has one. The search for the smallest distance ends where all tiles left are
+/// farther.
+/// @throws InvalidInput as ask() and check() do; files::FileError for a tile that is not what the site says, and for a
+///   field of uncertainties whose greatest values site.json lacks; Cancelled
 SiteAnswer ask(const Question& question, const Site& site, Shape& obstacle, const SiteMeans& means = {});
 
 /// The answer where the obstacle is a site. The question's poses place its frame in that of the first site.

@@ -56,8 +56,8 @@ private:
     return "has record " + std::to_string(name.record) + " of source " + std::to_string(name.source);
   }
 
-  /// Tiles are left out by these, so none may say less than the points do. A greatest value that is not there leaves
-  /// none out.
+  /// By bounds and greatest values, queries leave out tiles, so these must not be less than those of the points. No
+  /// tile is left out by a greatest value that is not there.
   void checkMeasures(const pcl::PCLPointCloud2& cloud)
   {
     Tile measured;

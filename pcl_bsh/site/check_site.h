@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Is a site whole: each point in its tile, each record of each source there once?
+// Checks that a site is whole: each point is in its tile, and each record of each source is there once.
 #pragma once
 
 #include <pcl_bsh/export.h>

@@ -68,13 +68,13 @@ public:
   }
 
 private:
-  /// Whether point i is nearer to this model, or as near at an earlier pose, or there to a smaller point. Distances
-  /// that are equal as floats may differ: exact arithmetic decides. Distances of swept motion are not exact, and are
-  /// not compared again.
+  /// Whether this model is nearer to point i than the models before. At equal distances the earlier pose counts, then
+  /// the smaller point of a model. Distances that are equal as floats may differ: exact arithmetic decides. Distances
+  /// of swept motion are not exact, and are not compared again.
   bool isNearer(std::uint32_t i, const TrajectoryResult& found, const MetPoint& nearest) const
   {
     const float before = joined_.distance[i], now = found.distance[i];
-    if (now != before) return !(now > before); // as they are where there was none before
+    if (now != before) return !(now > before); // true also where there was none before, which is NaN
     const std::int32_t pose = found.closest_pose[i], pose_before = joined_.closest_pose[i];
     int sign = 0;
     if (!is_swept_) {
@@ -209,7 +209,8 @@ void followPathOfCloud(const QuestionPart& part, const Poses& poses, PassageSum&
   answer.tiles += visitTiles(part, tile_query, tiles, sum, find);
 }
 
-/// Follows the path of a site. Reads the tiles of it that come near a tile of the input on their way.
+/// Answers about an obstacle that is a site and moves along a path. Reads its tiles that come near a tile of the input
+/// on their way.
 void followPathOfSite(const QuestionPart& part, const Poses& poses, PassageSum& sum, SiteAnswer& answer)
 {
   const PlacedSite site = part.input();
@@ -221,7 +222,7 @@ void followPathOfSite(const QuestionPart& part, const Poses& poses, PassageSum& 
   TileQuery tile_query(part, site);
   const Uncertainty of_model = part.question.uncertaintyOfObstacle();
   ObstacleTiles models({model, Eigen::Isometry3d::Identity(), of_model}, tile_query.bytesLeft());
-  std::vector<std::vector<std::uint32_t>> near(site.site.tiles.size()); // those that may come near to each tile
+  std::vector<std::vector<std::uint32_t>> near(site.site.tiles.size()); // for each tile, the model's near it
   for (std::uint32_t j = 0; j < model.tiles.size(); ++j) {
     if (!model.tiles[j].bounds) continue;
     const CloudBoxes box(trueBounds(model.tiles[j], of_model));

@@ -25,7 +25,7 @@ namespace {
 /// The answer of a tile about one obstacle.
 struct OfTile {
   CollidingRecords colliding;  ///< of the tile's points
-  std::vector<double> numbers; ///< the same, in sum
+  std::vector<double> numbers; ///< as asked() describes them
 };
 
 class SeveralAsking {
@@ -82,7 +82,7 @@ private:
 
   bool wantsClosest() const { return all_.question.wanted.closest; }
 
-  /// Whether the smallest distance of what collides is one of those that are told of points.
+  /// Whether points that collide get distances. If so, the smallest of these is the obstacle's smallest distance.
   bool tellsContacts() const { return all_.question.wanted.contacts || all_.question.path; }
 
   bool isNear(std::uint32_t obstacle, const Tile& tile) const
@@ -91,7 +91,7 @@ private:
     return one.mayReach(tile) || (wantsClosest() && one.lowerBound(tile) <= most(obstacle));
   }
 
-  /// The distance up to which a smaller one may be found.
+  /// Returns an upper bound of the smallest distance of an obstacle, or 0 where it is less.
   double most(std::uint32_t obstacle) const { return std::max(nearest_.least(obstacle), 0.0); }
 
   std::vector<std::uint32_t> nearTo(const Tile& tile) const
@@ -102,7 +102,7 @@ private:
     return near;
   }
 
-  /// Tiles that may matter, those first that are the nearest to an obstacle.
+  /// Returns the tiles that may matter: first the tiles that are nearest to an obstacle, then the others.
   std::vector<std::uint32_t> neededTiles()
   {
     const std::vector<Tile>& tiles = all_.site.tiles;
@@ -127,8 +127,8 @@ private:
     return needed;
   }
 
-  /// Numbers of points that collide with anything and are undecided; then of each obstacle that is near its number, how
-  /// many numbers follow, and these.
+  /// Returns how many points collide with anything, and how many are undecided. Then follow, for each obstacle that is
+  /// near, its index, the count of its numbers, and its numbers.
   std::vector<double> askedOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const SphereHierarchy& hierarchy)
   {
     const std::vector<std::uint32_t> near = nearTo(tile);
@@ -157,8 +157,8 @@ private:
     return numbers;
   }
 
-  /// One obstacle. Its numbers: how many near records there are, these, and the sum along the path where not all is
-  /// free.
+  /// Asks about one obstacle. Its numbers are the count of near records, the near records and, unless all points are
+  /// free, the numbers of PassageSum.
   OfTile asked(std::uint32_t obstacle, const Tile& tile, const pcl::PCLPointCloud2& cloud, const Shape& shape,
                unsigned threads) const
   {
@@ -207,7 +207,7 @@ private:
     return colliding;
   }
 
-  /// Where the obstacle is nearest to a tile's points, and a place that its faces close round.
+  /// Returns where the obstacle is nearest to a tile's points, and a place that its faces enclose.
   std::vector<NearRecord> recordsOf(std::uint32_t obstacle, const Tile& tile, const pcl::PCLPointCloud2& cloud,
                                     const Shape& shape, unsigned threads, const CollidingRecords& colliding) const
   {

@@ -15,7 +15,7 @@ namespace pcl_bsh::site {
 
 namespace {
 
-/// A point of a site that may be nearest to something: the nearest of a tile.
+/// The nearest point of a tile, which may be the nearest point of the site.
 struct Candidate {
   Point3 place;
   SitePoint point;
@@ -65,8 +65,8 @@ struct Counts {
   std::uint64_t colliding = 0, undecided = 0;
 };
 
-/// Flags of the points of a comparison's tiles. @param told gets those of a tile, and their counts
-/// @param flags_of_cloud gets those of the cloud in memory; null: they are not asked for
+/// Flags the points of a comparison's tiles. @param told gets the flags of each tile, and their counts
+/// @param flags_of_cloud gets the flags of the cloud in memory; null: they are not asked for
 template <typename Told>
 Counts flags(const QuestionPart& part, Comparison& comparison, std::vector<Verdict>* flags_of_cloud, const Told& told,
              TilesRead& read)
@@ -204,7 +204,7 @@ void findClosest(const QuestionPart& part, SiteAnswer& answer)
   };
   answer.tiles += comparison.visit(infinity, ask, [&] {
     least = leastOfAllRanks(least);
-    return part.question.solid ? std::max(least, 0.0) : least; // a tile that the box meets may hold what is deeper
+    return part.question.solid ? std::max(least, 0.0) : least; // a tile that the box meets may have deeper points
   });
   answer.obstacle_tiles += comparison.readOfOther();
 
@@ -233,7 +233,7 @@ void measure(const QuestionPart& part, SiteAnswer& answer)
     Answer of_tile;
     PointDistances& all = of_tile.distances.a;
     all.distance.assign(view.count, std::numeric_limits<double>::quiet_NaN());
-    PointDistancesRequest nearer = wanted; // what is farther than all points' distances changes none
+    PointDistancesRequest nearer = wanted; // a point farther than all distances changes none
     comparison.compareWithOther(
         tile, [&] { return nearer.max_distance; },
         [&](const pcl::PCLPointCloud2&, const Placed& others) {

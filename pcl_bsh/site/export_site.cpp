@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Some sources one after the other, window by window: each window holds as many records as memory does, and collects
-/// them from all tiles.
+/// Writes some sources one after the other, window by window. A window has as many records as memory can hold, and
+/// collects them from all tiles.
 class Exporter {
 public:
   Exporter(const Site& site, std::size_t first, std::size_t last, const Fields& fields, const ExportOptions& options)
@@ -76,7 +76,7 @@ private:
         const std::uint64_t number = begins_[source] + record;
         if (number < begin || number >= end) continue;
         copy_(bytes, window_.data() + (number - begin) * layout_.point_step);
-        filled += is_filled[number - begin] ? 0 : 1; // a record that is there twice hides no other one
+        filled += is_filled[number - begin] ? 0 : 1; // a record that is there twice hides no missing one
         is_filled[number - begin] = true;
       }
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clouds of a site again, in the order of their sources.
+// Writes the points of a site as clouds again, in the order of their sources.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -12,7 +12,7 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::site {
 
-/// How much memory an export may take, and whom it tells how far it is.
+/// The memory and the progress of an export.
 struct ExportOptions {
   std::uint64_t memory = std::uint64_t{2}
                          << 30; ///< bytes that may be held at once; the less, the oftener tiles are read
@@ -24,8 +24,8 @@ struct ExportOptions {
 /// @throws files::FileError, also where the disk has no room; Cancelled
 void exportCloud(const Site& site, const std::filesystem::path& file, const ExportOptions& options = {});
 
-/// Writes one source as a binary PCD file: its points in their order, with its fields, in its types, and those that are
-/// no source's: what queries have found.
+/// Writes one source as a binary PCD file: its points in their order, with its fields in its types. They also have the
+/// fields that no source has, which hold the answers of queries.
 /// @param source < site.sources.size()
 void exportSource(const Site& site, std::size_t source, const std::filesystem::path& file,
                   const ExportOptions& options = {});

@@ -38,7 +38,7 @@ std::string escapedForXml(const std::string& text)
     case '<':
       xml += "&lt;";
       break;
-    case '>': // with which VTK's reader takes an element for ended, wherever it is
+    case '>': // VTK's reader ends an element at it, wherever it is
       xml += "&gt;";
       break;
     case '"':
@@ -85,7 +85,7 @@ std::string inBase64(const std::string& bytes)
   return text;
 }
 
-/// The arrays of a tile one after the other in a file, none of which is held beside the tile but the one that is
+/// Writes the arrays of a tile one after the other into a file. Memory holds the tile, and only the array that is being
 /// written.
 class PieceWriter {
 public:
@@ -119,8 +119,8 @@ public:
 private:
   const pcl::PCLPointField& axis(const char* name) const { return *findField(cloud_, name); }
 
-  /// In base64, with its size before it. Raw bytes behind the document would be a quarter less, but expat refuses them
-  /// since its mends of 2024.
+  /// Writes an array in base64, with its size before it. Raw bytes behind the document would be a quarter less, but
+  /// expat refuses them since its corrections of 2024.
   void writeArray(const std::string& description, const std::string& bytes)
   {
     file_.append("        <DataArray " + description + " format=\"binary\">\n");

@@ -45,7 +45,7 @@ void check(const std::vector<fs::path>& clouds, const MakeOptions& options)
                                 " cannot be: give from 1 to 2147483647");
 }
 
-/// The clouds one after the other, twice.
+/// Makes a site. Reads the clouds one after the other, twice.
 class Maker {
 public:
   Maker(const std::vector<fs::path>& clouds, const fs::path& folder, const MakeOptions& options)
@@ -126,7 +126,7 @@ private:
     }
   }
 
-  /// The systems of all clouds are one, as far as is known.
+  /// Refuses a cloud whose coordinate system is not the first one named, as far as is known.
   void requireOneSystem(const std::pair<std::size_t, io::CoordinateSystem>& first, std::size_t cloud,
                         const io::CoordinateSystem& system) const
   {
@@ -183,7 +183,7 @@ private:
       if (tree_.bytes() > options_.memory / 4) failAsTooFine();
     };
     forEachRecord(MakeStep::count, 0, 0, 0, add, [](std::uint32_t, std::uint32_t, std::uint64_t) {});
-    // One tile more for points that are nowhere.
+    // One tile more, for points that are not finite.
     state_.open.resize(std::size_t{tree_.plan()} + 1);
     if (tree_.bytes() > options_.memory / 4) failAsTooFine();
     state_.bounds = site_.bounds;
@@ -279,7 +279,8 @@ private:
       throw files::FileError(folder_, "a cloud has changed while it was read", "make it again");
   }
 
-  /// The file of a tile, which is followed by another one when it is full: so many points at one place.
+  /// Returns the file that takes the next point of a tile. When it is full, another one follows: that happens where too
+  /// many points are at one place, or are not finite.
   TileFile& tileFor(std::uint32_t tile)
   {
     std::optional<std::size_t>& file = state_.open[tile];

@@ -28,10 +28,10 @@ struct MakeOptions {
   std::uint64_t memory = std::uint64_t{2} << 30; ///< bytes that may be held at once; at least 64 MiB
   std::uint64_t tile_points = 4'000'000;         ///< no tile has more; from 1 to 2^31 - 1
   std::uint64_t overview_points = 1'000'000;     ///< most in overview.pcd, drawn evenly; 0: it is not written
-  /// After each so many points, the state is noted in the folder, so that a later run can go on from there. Sites of
-  /// fewer points begin again. At least 1.
+  /// Points between two notes of the state in the folder, from which a later run can go on. Sites of fewer points begin
+  /// again. At least 1.
   std::uint64_t save_points = 50'000'000;
-  /// Files with faces are their vertices alone; else they are refused, for a site holds no surface.
+  /// Takes the vertices alone of files with faces; else such files are refused, because a site holds no surface.
   bool vertices_only = false;
   bool allow_scale = false;             ///< transforms of .ptx files may scale uniformly; else they are refused
   unsigned threads = 0;                 ///< that unpack LAZ; 0: all of the machine's
@@ -39,12 +39,12 @@ struct MakeOptions {
   /// Names of a cloud's columns, as readCloud() takes them; null: as the files say.
   std::function<std::vector<std::string>(const std::filesystem::path&)> columns;
 
-  /// The clouds' lengths, and then the site's, are in these: mm, cm, m, ft or us-ft. Empty: as files say, and as they
-  /// are.
+  /// The unit of the clouds' lengths, and that of the site's: mm, cm, m, ft or us-ft. Empty: the unit that files name,
+  /// and lengths as they are.
   std::string unit;
   std::string to_unit; ///< see unit
   /// The clouds' coordinate system, and the projected one to which PROJ transforms them, as EPSG:25832 or WKT; each
-  /// file is read once more for that. Empty: as files say, and as they are. Not with units.
+  /// file is read once more for that. Empty: the system that files name, and coordinates as they are. Not with units.
   std::string crs;
   std::string to_crs; ///< see crs
   /// Called with a cloud and remarks for users about how it is read; null: not told.

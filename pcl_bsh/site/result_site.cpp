@@ -183,7 +183,7 @@ private:
     written_.push_back(static_cast<double>(crc32));
   }
 
-  /// Takes one point of `every_`. @param record of the results, of this tile
+  /// Adds one point of each `every_` to the overview. @param record of the results, of this tile
   void addToOverview(const Tile& tile, const std::uint8_t* record)
   {
     const auto [source, number] = names_(record);
@@ -192,7 +192,8 @@ private:
       overview_.append(reinterpret_cast<const char*>(record), layout_.point_step);
   }
 
-  /// Takes over the tiles whose answers an earlier run has kept, and whose files are what it wrote. Dealt to all ranks.
+  /// Takes over the tiles whose answers an earlier run has kept, and whose files have not changed since. All ranks
+  /// share the work.
   void goOn()
   {
     std::vector<std::size_t> mine;
@@ -202,7 +203,7 @@ private:
            i += static_cast<std::size_t>(ranks()))
         if (takeOver(i)) mine.push_back(i);
     }
-    catch (...) { // as of answers to another question
+    catch (...) { // for example, of answers to another question
       failure = std::current_exception();
     }
     throwOfAnyRank(failure);
@@ -257,7 +258,7 @@ private:
     return place;
   }
 
-  /// Tiles that no rank has written, dealt to all.
+  /// Copies the tiles that no rank has written. All ranks share the work.
   void copyOthers()
   {
     const std::vector<double> written = gatheredFromAllRanks(written_);

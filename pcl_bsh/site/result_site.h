@@ -30,7 +30,7 @@ struct ResultField {
 
 /// Returns the site's fields with answers to an earlier question, which was asked of its clouds before the site was
 /// made. These are `collision`, `distance`, `first_pose` and `closest_pose`, of each source with a field `collision`.
-/// Beside this question's answers they would pass for its own: ResultSite leaves them out.
+/// ResultSite leaves them out, as they would pass for answers to this question.
 /// @param fields that this question answers: they are not returned
 std::vector<std::string> staleFields(const Site& site, const std::vector<ResultField>& fields);
 
@@ -41,14 +41,14 @@ std::uint64_t spaceWanted(const Site& site, const std::filesystem::path& folder,
 /// Lets a run use the answers that an earlier run of its question has kept.
 struct Continuation {
   std::string question; ///< all that was asked; empty: nothing is kept for another run
-  bool goes_on = false; ///< whether to use what there is, which must be of the same question; else it is cleared
+  bool goes_on = false; ///< true: use the answers there, which must be to this question; false: remove them
 };
 
 /// Made and finished by all ranks of an MPI job together; each writes the tiles that it has. Until finish() has
 /// returned, the folder is marked as not complete. With a question, each tile is in place as soon as it is written,
 /// with its answer in a file beside it. So a run of that question can go on where finish() is not reached. Without a
-/// question, or before any tile, one process removes the files that it made. An MPI job, or a process that was killed,
-/// may leave a marked folder. The next ResultSite, or makeSite(), clears it.
+/// question, or before any tile, a single process that fails removes the files that it made. A failed MPI job, or a
+/// process that was killed, may leave a marked folder. The next ResultSite, or makeSite(), clears it.
 class ResultSite {
 public:
   /// @param folder a new or empty one, or one that was left not complete

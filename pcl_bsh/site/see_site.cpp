@@ -29,7 +29,7 @@ struct Found {
   Verdict verdict;
 };
 
-/// Flags of all records of an obstacle that a tile decides.
+/// Returns the verdicts of an obstacle's records against a tile at each pose, except those that are free.
 std::vector<Found> collide(const QuestionPart& part, std::uint32_t obstacle, const SphereHierarchy& tile,
                            unsigned threads)
 {
@@ -178,7 +178,7 @@ private:
     read.read += sumOfAllRanks(visitor.read());
   }
 
-  /// Two of each tile whatever they say, so that there are two.
+  /// Keeps the beams that look at an obstacle, and two others of each tile, so that the scan has two.
   void keep(const ScanBeams& scan, std::uint32_t number, std::vector<KeptBeam>& kept) const
   {
     int others = 0;

@@ -82,8 +82,8 @@ struct Tile {
   std::optional<Bounds> bounds; ///< of its finite points
   double spacing = 0.0;         ///< median distance of a sample of its points to the nearest other
   std::uint32_t crc32 = 0;      ///< of its records
-  /// The greatest value of finite points, where any has one, of each field of one floating-point number except
-  /// coordinates.
+  /// For each field of one floating-point number, except coordinates: its greatest value among finite points. A field
+  /// that is NaN for all of them has no entry.
   std::map<std::string, double> greatest;
 };
 
@@ -97,7 +97,7 @@ struct Site {
   std::vector<Tile> tiles;
 };
 
-/// Reads a folder's site.json; of the tiles, only whether their files are there.
+/// Reads a folder's site.json, and checks that the tiles' files are there.
 /// @throws std::runtime_error: a folder that is no site or is not complete, another version, a document that the schema
 ///   does not allow, numbers of points that disagree, a tile's file that is missing or lies outside the folder
 Site readSite(const std::filesystem::path& folder);

@@ -17,7 +17,7 @@ class ClashFinder::Joining {
 public:
   Joining(const Site& site, double cluster_distance) : site_(site), distance_(cluster_distance)
   {
-    findClashes(PointsView{}, TrajectoryResult(), cluster_distance); // refuses a distance although no tile may collide
+    findClashes(PointsView{}, TrajectoryResult(), cluster_distance); // refuses a distance even where no tile collides
   }
 
   Pieces piecesOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const CollidingRecords& found,

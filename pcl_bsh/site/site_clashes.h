@@ -20,20 +20,20 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh::site {
 
-/// A point of a site that another one meets.
+/// The point of a model that is nearest to a colliding point of a site.
 struct MetPoint {
   SitePoint point;
-  Point3 place = {0, 0, 0}; ///< in its own site
+  Point3 place = {0, 0, 0}; ///< in the frame of its own site
 };
 
 /// The clashes that ClashFinder found.
 struct SiteClashes {
-  /// As findClashes() has them. Their records are numbers of `points`. Each clash has at most ClashFinder::most_points
-  /// and the point of its closest pair. These do not depend on tiles.
+  /// The clashes that findClashes() would return. Their records are indices into `points`. Each clash lists at most
+  /// ClashFinder::most_points of its points, and the one of its closest pair. The choice does not depend on tiles.
   std::vector<Clash> clashes;
   std::vector<SitePoint> points; ///< some points of all clashes
   std::vector<Point3> places;    ///< where they are
-  /// Where the model is a site: its points of the closest pairs. The clashes' model_point are their numbers.
+  /// Where the model is a site: its points of the closest pairs. The model_point of each clash is an index into them.
   std::vector<MetPoint> met;
 };
 
@@ -50,11 +50,11 @@ public:
   ClashFinder& operator=(const ClashFinder&) = delete;
 
   /// For ask(): returns the clashes in a tile as numbers, which may be kept for a finder of the same distance.
-  /// @param met where the model is a site, the points that closest_point numbers; else null
+  /// @param met where the model is a site, the points that closest_point is an index into; else null
   std::vector<double> numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const CollidingRecords& found,
                                 const std::vector<MetPoint>* met) const;
 
-  /// For ask(): adds the numbers from the given one on.
+  /// For ask(): adds the clashes in the numbers from numbers[begin] on, as numbersOf() returns them.
   void add(const std::vector<double>& numbers, std::size_t begin);
 
   /// All clashes, on all ranks of an MPI job. To be called once, by all of them.
@@ -65,7 +65,7 @@ private:
   std::unique_ptr<Joining> joining_;
 };
 
-/// The median of the tiles' spacings, each of which counts as often as it has points; 0 of a site without.
+/// Returns the median of the tiles' spacings, each weighted by the points of its tile; 0 for a site without points.
 double spacingOf(const Site& site);
 
 } // namespace pcl_bsh::site

@@ -5,7 +5,7 @@
 //   const site::SiteObstaclesAnswer answer = site::ask(question, hall, parts);
 //   if (answer.each[0].verdict == Verdict::colliding) ...
 //
-// Each tile is read once, and asked about all obstacles that may be near it. Threads share these out.
+// Each tile is read once, and asked about all obstacles that may be near it. Threads share the obstacles.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -21,7 +21,7 @@ namespace pcl_bsh::site {
 
 /// The answer about one of several obstacles.
 struct SiteObstacleAnswer : ObstacleAnswer {
-  std::optional<SitePair> pair; ///< that of `closest`, whose own has 0 for the site's point
+  std::optional<SitePair> pair; ///< the pair of `closest`; closest.pair has 0 as the site's point
   Point3 place = {0, 0, 0};     ///< where the site's point of the pair is
   TrajectoryResult found;       ///< its counts, poses and first contacts
   Answer::Unseen not_seen;      ///< with `seen`: its records that are unseen
@@ -37,9 +37,9 @@ struct SiteObstaclesAnswer {
 
 /// Asks for flags, contacts, poses, the smallest distances and what is unseen. A receiver gets the answer about all
 /// obstacles together.
-/// @param means whose `clashes` are left out
+/// @param means its `clashes` is not used
 /// @param clashes a finder for each obstacle, or none
-/// @throws as ask() of one obstacle does; InvalidInput for no obstacle, and for other answers
+/// @throws as ask() of one obstacle does; InvalidInput for no obstacle, and for answers other than these
 SiteObstaclesAnswer ask(const Question& question, const Site& site, std::vector<PlacedShape>& obstacles,
                         const SiteMeans& means = {}, const std::vector<ClashFinder*>& clashes = {});
 

@@ -20,15 +20,15 @@ struct Member {
 struct Piece {
   Clash clash;    ///< without records
   Member nearest; ///< its point of the closest pair
-  MetPoint met;   ///< the model's
+  MetPoint met;   ///< the model's point of the closest pair
 };
 
 /// The pieces of some tiles.
 struct Pieces {
   bool of_site = false; ///< whether the model is a site: met points are then points of it
   std::vector<Piece> pieces;
-  std::vector<Member> border; ///< points that a step of the cluster distance may lead to another tile
-  std::vector<Member> some;   ///< of each piece
+  std::vector<Member> border; ///< points within the cluster distance of the box of another tile
+  std::vector<Member> some;   ///< some points of each piece
 };
 
 /// Returns them as numbers. add() reads one such sequence after another.
@@ -42,8 +42,8 @@ Pieces gathered(const Pieces& own);
 /// the site counts, as in memory.
 void join(Piece& piece, const Piece& other);
 
-/// Leaves so many at most, drawn by lots. The points of a clash that are left do not depend on the parts in which they
-/// are drawn.
+/// Leaves `most` members at most, those with the smallest hashes of their names. So the points of a clash that are left
+/// do not depend on how the clash was cut into pieces.
 void drawSome(std::vector<Member>& members, std::size_t most);
 
 } // namespace pcl_bsh::site

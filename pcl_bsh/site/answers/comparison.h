@@ -16,7 +16,8 @@ namespace pcl_bsh::site {
 /// A cloud that a site is compared with, always as a whole.
 class ObstacleCloud {
 public:
-  /// @param solid it counts with the inside, which may be far from all of its parts
+  /// @param solid its inside counts, too; then one box about the whole cloud is compared, as the inside may be far from
+  ///   the boxes of its parts
   ObstacleCloud(const Placed& standing, bool solid)
   : cloud(standing),
     boxes_(boxesOf(cloud.hierarchy().view(), solid)),
@@ -57,7 +58,7 @@ public:
 
   bool isOfSites() const { return tiles_.has_value(); }
 
-  /// Some points of the other site where they stand, or the cloud, of which there is one.
+  /// Returns these points of the other site where they stand; or the whole cloud in memory, whatever `some` is.
   Placed standing(const SphereHierarchy& some) const { return cloud_ ? cloud_->cloud : Placed(some, pose_of_other_); }
 
   /// Calls query(a, b) with empty clouds in place of sites, so that it refuses wrong arguments where no tile is asked

@@ -8,19 +8,20 @@
 
 namespace pcl_bsh::site {
 
-/// A tile as a thing of questions. Its copies share what solids need of it.
+/// A tile as a Shape, which borrows its hierarchy. Copies of the Shape share what solids need of the tile.
 inline Shape shapeOf(const SphereHierarchy& tile)
 {
   return {"a tile", std::shared_ptr<const SphereHierarchy>(std::shared_ptr<const void>(), &tile)};
 }
 
-/// Adds those of a tile's points that the obstacle holds, where it is asked as a solid. @param found of the surface
+/// Adds the points of a tile that the obstacle holds, where it is asked as a solid.
+/// @param found the answer about the obstacle's surface
 template <typename Found>
 void addEnclosedOf(const QuestionPart& part, Shape tile, Found& found)
 {
   if (!part.question.solid) return;
   Question question = part.question;
-  question.uncertainty = {}; // those of the points are built in
+  question.uncertainty = {}; // the hierarchy of the points has theirs
   question.input_pose_uncertainty = {};
   addEnclosed(question, tile, *part.shape, found);
 }

@@ -12,12 +12,12 @@
 
 namespace pcl_bsh::site {
 
-/// The word of one tile about an obstacle.
+/// A result of one tile about an obstacle.
 struct NearRecord {
   enum class Kind : std::uint32_t {
-    colliding, ///< the smallest distance of what collides, as it is told along a path
-    measured,  ///< the smallest distance at the poses, of anything
-    enclosed   ///< a place that the obstacle's faces close round; `pose` is the number of the tile
+    colliding, ///< the smallest distance of points that collide, as along a path
+    measured,  ///< the smallest distance of all points, at any pose
+    enclosed   ///< a place that the obstacle's faces enclose; `pose` is the number of the tile
   };
   std::uint32_t obstacle = 0;
   Kind kind = Kind::measured;
@@ -38,15 +38,15 @@ class NearestRecords {
 public:
   explicit NearestRecords(std::size_t obstacles);
 
-  /// Distances that are greater than this cannot be the smallest, as this rank knows.
+  /// Returns an upper bound of the smallest distance of an obstacle, as far as this rank knows.
   double least(std::uint32_t obstacle) const { return least_[obstacle]; }
 
-  /// Lets no greater distance count.
+  /// Lowers the upper bound to a distance.
   void limit(std::uint32_t obstacle, double distance);
 
   void add(const NearRecord& near);
 
-  /// To be called once by all ranks, before the others.
+  /// Gathers the records of all ranks. To be called once by all of them, before tell() and enclosed().
   void gather();
 
   /// Sets the smallest distance of an obstacle, and its pair. Equal distances are compared once more, exactly.

@@ -9,7 +9,7 @@ namespace pcl_bsh::site {
 
 namespace {
 
-/// Its number, as those of poses, is exact as a double.
+/// Stands for no contact: later than all poses. Its number, like the numbers of poses, is exact as a double.
 constexpr FirstContact no_contact = {std::size_t{1} << 53, 1.0};
 
 /// None where no rank has a contact.
@@ -67,7 +67,7 @@ TrajectoryRequest alongPath(const QuestionPart& part)
   const Question& question = part.question;
   const Wanted& of_all = question.wanted;
   auto wanted = wantedOf<TrajectoryRequest>(question);
-  const bool closest = of_all.closest && !question.accuracy.stopsEarly(); // which knows no distances
+  const bool closest = of_all.closest && !question.accuracy.stopsEarly(); // a search that stops early has no distances
   wanted.distances = of_all.contacts || of_all.first_poses || closest;
   wanted.first_poses = wanted.closest_poses = wanted.distances;
   wanted.swept = question.sweptTolerance();

@@ -34,7 +34,7 @@ public:
   PassageSum(const QuestionPart& part, std::size_t poses);
 
   /// Returns the answer about a tile as numbers.
-  /// @param met the points that closest_point numbers, where the model is a site
+  /// @param met the points that closest_point is an index into, where the model is a site
   std::vector<double> numbersOf(const Tile& tile, const pcl::PCLPointCloud2& cloud, const CollidingRecords& some,
                                 const std::vector<MetPoint>* met = nullptr) const;
 

@@ -12,7 +12,7 @@
 
 namespace pcl_bsh::site {
 
-/// At least the distance of the nearest points of both, where the boxes are as small as they can be.
+/// Returns an upper bound of the distance of any point in one box from any point in the other.
 inline double mostDistance(const Bounds& a, const Bounds& b)
 {
   Point3 most;
@@ -80,7 +80,7 @@ public:
 private:
   const CloudBoxes boxes_;
   const PathBoxes reach_;
-  std::vector<Bounds> at_poses_; ///< the box about all of it
+  std::vector<Bounds> at_poses_; ///< at each pose, the box about the whole obstacle
 };
 
 } // namespace pcl_bsh::site

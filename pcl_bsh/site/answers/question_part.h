@@ -44,7 +44,7 @@ struct QuestionPart {
 /// Refuses answers that sites do not have. @throws InvalidInput
 void requireAnswers(const Question& question, bool obstacle_is_site);
 
-/// Builds an obstacle in memory, and what its faces enclose where that counts.
+/// Builds the hierarchy of an obstacle in memory and, where it counts as a solid, what its faces enclose.
 /// @throws InvalidOption for a solid without faces, and as Shape does
 void build(const Question& question, Shape& obstacle);
 
@@ -52,8 +52,8 @@ void build(const Question& question, Shape& obstacle);
 NamedCloud namedSite(const Site& site);
 
 void findAny(const QuestionPart& part, SiteAnswer& answer);
-void flag(const QuestionPart& part, SiteAnswer& answer);         ///< the input's points, and the obstacle's in memory
-void flagObstacle(const QuestionPart& part, SiteAnswer& answer); ///< of another site
+void flag(const QuestionPart& part, SiteAnswer& answer);         ///< the points of input, and obstacle in memory
+void flagObstacle(const QuestionPart& part, SiteAnswer& answer); ///< flags the points of an obstacle that is a site
 void findClosest(const QuestionPart& part, SiteAnswer& answer);
 void measure(const QuestionPart& part, SiteAnswer& answer);
 void followPath(const QuestionPart& part, SiteAnswer& answer);
@@ -62,12 +62,12 @@ void followPath(const QuestionPart& part, SiteAnswer& answer);
 /// @param each gets `unseen` and `obstacle_flags` of an obstacle. @param all gets the tiles that were read, and beams
 void lookAround(const std::vector<const QuestionPart*>& parts, const std::vector<Answer*>& each, SiteAnswer& all);
 
-/// Returns the warning of question/warnings/hollow.h about an obstacle in memory that is no solid, and whose faces
-/// close round a place of the site while no point of the site is near them. Reads up to four of the tiles that meet its
-/// box at some pose.
+/// Returns the warning of question/warnings/hollow.h about an obstacle in memory that is not asked as a solid. There is
+/// one where its faces enclose a place of the site, and no point of the site is near the faces. Reads up to four of the
+/// tiles that meet its box at some pose.
 /// @param name of the site.
-/// @param nearest the smallest distance that the answer tells; none: it tells none, and where there is such a place,
-///   the smallest distance is computed
+/// @param nearest the smallest distance that the answer tells; none: it tells none. The smallest distance is computed
+///   then, where there is such a place
 std::optional<Warning> warningOfHollow(const QuestionPart& part, const std::string& name,
                                        std::optional<double> nearest);
 

@@ -68,7 +68,8 @@ public:
 
   /// Calls find() for all of these tiles, and add() with the numbers that it returns. Tiles whose numbers an earlier
   /// run has kept are not asked about: add() gets these numbers on the first rank.
-  /// @param find (tile, cloud, its hierarchy): its numbers, after the receiver. @param add (numbers)
+  /// @param find called with (tile, cloud, its hierarchy): calls the receiver, and returns the tile's numbers
+  /// @param add called with the numbers
   /// @param runs whether tiles that follow each other are better asked about on one rank
   /// @param still as that of TileVisitor::visitAll()
   template <typename Find, typename Add>
@@ -89,7 +90,7 @@ public:
       add(numbers);
       if (answers) answers->keep(static_cast<std::size_t>(&tile - visited_.site.tiles.data()), numbers);
     };
-    constexpr std::size_t runs_of_rank = 4; // so many that the last ones make up for those that took long
+    constexpr std::size_t runs_of_rank = 4; // enough for quick ranks to relieve slow ones
     const std::size_t run = left.size() / (runs_of_rank * static_cast<std::size_t>(ranks()));
     visitor_.visitAll(left, use(ask, left.size()), runs ? std::max<std::size_t>(run, 1) : 1, still);
     return readOf(tiles.size());

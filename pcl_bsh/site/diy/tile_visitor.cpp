@@ -71,7 +71,7 @@ diy::mpi::communicator world()
   return {};
 }
 
-/// Numbers that are dealt to the ranks of an MPI job, to each when it asks: those that are slow get fewer.
+/// Deals numbers to the ranks of an MPI job, to each when it asks, so that slow ranks get fewer.
 class SharedCounter {
 public:
   /// To be called by all ranks, as the destructor.
@@ -96,10 +96,10 @@ public:
   SharedCounter(const SharedCounter&) = delete;
   SharedCounter& operator=(const SharedCounter&) = delete;
 
-  /// Each number once, from 0, to whichever rank asks.
+  /// Returns the next number, from 0. No other rank gets it.
   std::uint64_t next() { return taken(1); }
 
-  /// Lets no rank have any of so many numbers that is not dealt yet.
+  /// Ends the dealing: from now on, next() returns no number less than `numbers`.
   void end(std::uint64_t numbers) { taken(numbers); }
 
 private:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t cells_in_tile = 64;
 constexpr int least_exponent = -1000; ///< of an octree's edge
-constexpr double farthest = 0x1p1000; ///< what lies farther out is counted there
+constexpr double farthest = 0x1p1000; ///< greater magnitudes are counted as this one
 
 bool holds(const Point3& corner, double edge, const Point3& point)
 {
@@ -81,7 +81,8 @@ DensityTree::Place DensityTree::step(const Place& place, std::size_t part)
   return below;
 }
 
-/// Points that all lie in one part were counted there; of others nobody knows any more where they lay.
+/// Divides a cell. Where all of its points lie in one part, their count moves there. Else the cell keeps the count, as
+/// it is not known which parts they lie in.
 void DensityTree::divide(const Place& place)
 {
   cells_[place.cell].is_divided = true;
@@ -130,7 +131,7 @@ void DensityTree::add(const Point3& point)
   }
 }
 
-/// The undivided cells of an octree, also where nothing was counted: a point counted above may lie there.
+/// Collects the undivided cells of an octree, also the empty ones: a point counted in a cell above may lie there.
 void DensityTree::collect(std::size_t octant, const Place& place, std::uint32_t above, std::uint64_t most_above,
                           Undivided& all)
 {
@@ -159,7 +160,7 @@ void DensityTree::collect(std::size_t octant, const Place& place, std::uint32_t 
   }
 }
 
-/// Makes a divided cell whole where all of its parts are of one tile.
+/// Makes a divided cell undivided again where all of its parts are of one tile.
 void DensityTree::simplify(std::uint32_t number)
 {
   Cell& cell = cells_[number];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Counts the points of a stream in cells, which are fine where points are dense, and makes tiles of at most so many
-// points of the cells.
+// Counts the points of a stream in cells, which are fine where points are dense. Groups the cells into tiles of at most
+// a given number of points.
 #pragma once
 
 #include <pcl_bsh/geometry/point3.h>
@@ -13,9 +13,9 @@
 
 namespace pcl_bsh::site {
 
-/// Eight octrees, one for each combination of signs, whose cells are the voxels of one grid: of edges that are powers
-/// of two, with a corner in the origin. Points are counted, not held: a cell is divided once it has counted 1/64 of a
-/// tile's points, and counts only those in its parts from then on. So a few ten thousand cells describe any cloud.
+/// Eight octrees, one for each combination of the coordinates' signs. Their cells are the voxels of one grid: edges are
+/// powers of two, and the origin is a corner. Points are counted, not held. A cell is divided once it has counted 1/64
+/// of a tile's points; its parts count all points from then on. So a few ten thousand cells describe any cloud.
 class DensityTree {
 public:
   explicit DensityTree(std::uint64_t tile_points);
@@ -23,9 +23,9 @@ public:
   /// Counts a finite point.
   void add(const Point3& point);
 
-  /// Divides the space into tiles of neighbouring cells, none of which can have more than tile_points of the points
-  /// counted, except a cell in which all points are at (almost) one place. To be called once.
-  /// @return how many
+  /// Divides the space into tiles of neighbouring cells. No tile can have more than tile_points of the points counted,
+  /// except a cell in which all points are at (almost) one place. To be called once.
+  /// @return the number of tiles
   std::uint32_t plan();
 
   /// After plan(): the tile of a point, counted or not. Takes about no time for a point near the last one.

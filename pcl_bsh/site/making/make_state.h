@@ -13,8 +13,8 @@
 
 namespace pcl_bsh::site {
 
-/// All points are counted, and the tiles are planned (the plan is beside it); those up to `source` and `record` are
-/// dealt to files; some files are measured.
+/// All points are counted, and the tiles are planned; the plan is a file beside the state. Points before (`source`,
+/// `record`) are dealt to files, and some files are measured.
 struct MakeState {
   std::optional<Bounds> bounds;
   std::uint32_t plan_crc32 = 0;
@@ -28,7 +28,7 @@ struct MakeState {
 /// Returns the state as a document. @param question the clouds and options that the site is made of
 std::string stateText(const MakeState& state, const io::Json& question);
 
-/// Reads the state in a file. @param question that it must be the state of
+/// Reads the state in a file. @param question the clouds and options that it must be the state of
 /// @throws files::FileError where it is of another question, or damaged
 MakeState readState(const std::filesystem::path& path, const io::Json& question);
 

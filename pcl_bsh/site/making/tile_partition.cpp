@@ -58,7 +58,7 @@ private:
     return most;
   }
 
-  /// Returns the points that one voxel more may add to it.
+  /// Returns the most points that one more voxel adds to it. Points of each divided voxel above are added once.
   std::uint64_t moreWith(std::uint32_t voxel)
   {
     std::uint64_t more = voxels_[voxel].points;
@@ -120,7 +120,7 @@ private:
   const std::vector<DividedVoxel>& above_;
   const std::uint64_t tile_points_;
   std::vector<std::uint32_t> order_, tiles_;
-  std::vector<std::uint32_t> seen_; ///< of each above, the last count that it was in
+  std::vector<std::uint32_t> seen_; ///< of each divided voxel, the `stamp_` of the last sum that has it
   std::uint32_t stamp_ = 0, next_ = 0;
 };
 

@@ -9,19 +9,19 @@
 
 namespace pcl_bsh::site {
 
-/// A voxel in which points were counted, or none.
+/// An undivided voxel, with the points counted in it, of which there may be none.
 struct CountedVoxel {
-  Point3 middle = {};           ///< of its points, or of itself
+  Point3 middle = {};           ///< of the box about its points; without points, of the voxel
   std::uint64_t points = 0;     ///< counted in it
-  std::uint32_t above = 0;      ///< the smallest one that holds it: its number among those above
-  std::uint64_t most_above = 0; ///< points counted in all that hold it, before they were divided
+  std::uint32_t above = 0;      ///< index of the smallest divided voxel that holds it
+  std::uint64_t most_above = 0; ///< points counted in all voxels that hold it, before they were divided
 };
 
 /// A voxel that was divided.
 struct DividedVoxel {
   static constexpr std::uint32_t none = 0xffffffffu;
-  std::uint64_t points = 0;   ///< counted in it before: in which of its parts they lie is not known
-  std::uint32_t above = none; ///< the smallest one that holds it
+  std::uint64_t points = 0;   ///< counted in it before; it is not known which of its parts they lie in
+  std::uint32_t above = none; ///< index of the smallest divided voxel that holds it; none: no voxel does
 };
 
 /// Cuts the voxels in two along the longest side of the box about them, until each part is one voxel or has at most

@@ -31,7 +31,8 @@ constexpr auto mark_text =
 constexpr auto state_name = "unfinished_site.state";
 constexpr auto plan_name = "unfinished_site.plan";
 
-/// Whether it is a name of a tile's file, or of the answer about it; also of one that was being written.
+/// Whether it is the name of a tile's file, or of the file with the answer about a tile, also of one that was being
+/// written.
 bool isTileName(const std::string& name)
 {
   constexpr std::string_view begin = "tile_";
@@ -211,7 +212,7 @@ void UnfinishedSite::mark()
   if (mark_.file < 0 && errno != ENOENT) files::failToWrite(folder() / mark_name, errno);
   if (mark_.file < 0 || flock(mark_.file, LOCK_EX | LOCK_NB) != 0)
     throw files::FileError(folder(), "another program makes a site there", "wait for it, or name a new folder");
-  // It may have been complete before the lock was ours, and its mark be gone.
+  // Another program may have completed the site, and removed its mark, before the lock was ours.
   struct stat locked = {}, named = {};
   const bool is_there = fstat(mark_.file, &locked) == 0 && stat((folder() / mark_name).c_str(), &named) == 0 &&
                         locked.st_dev == named.st_dev && locked.st_ino == named.st_ino;

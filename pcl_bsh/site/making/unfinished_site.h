@@ -23,7 +23,7 @@ bool isUnfinished(const std::filesystem::path& folder);
 std::uint64_t spaceWanted(const std::filesystem::path& folder, std::uint64_t bytes);
 
 /// Makes the folder, if need be, and the files in it, which are removed again unless finish() or save() is called. The
-/// files of an earlier run that was killed are removed first: its mark tells them. No other file is ever removed.
+/// files of an earlier run that was killed are removed first, where its mark is there. No other file is ever removed.
 class UnfinishedSite {
 public:
   enum class Use {
@@ -51,7 +51,7 @@ public:
   std::filesystem::path stateFile() const;
   std::filesystem::path planFile() const;
 
-  /// Removes all that was begun after save(): of the tiles' files the first `tiles` stay.
+  /// Removes the tiles' files that were begun after save(): the first `tiles` files stay.
   void discardTilesFrom(std::size_t tiles);
 
   /// Removes the files of tiles whose numbers are not among these.
@@ -63,10 +63,11 @@ public:
   /// Removes a file that was begun, if there is one. @param name relative to the folder
   void discard(const std::filesystem::path& name);
 
-  /// A file that was there when save() was called, with so many bytes. @param name relative to the folder
+  /// Opens a file that was there when save() was called, and cuts it to so many bytes. @param name relative to the
+  /// folder
   files::NewFile& goOn(const std::filesystem::path& name, std::uint64_t bytes);
 
-  /// From now on, the files stay where finish() is not reached.
+  /// Write the plan and the state. After save(), the files stay where finish() is not reached.
   void savePlan(const std::string& bytes);
   void save(const std::string& state);
 
@@ -78,8 +79,8 @@ private:
   void clear();
   void keepMark();
 
-  /// Open and locked while the site is made. Closed also where the constructor throws: a caller that goes on is not
-  /// taken for another program that makes a site there.
+  /// The file of the mark, open and locked while the site is made. It is closed also where the constructor throws. So a
+  /// caller that tries again is not refused as another program that makes a site there.
   struct Mark {
     int file = -1;
     Mark() = default;

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double cells_of_longest = 8;   ///< of the grid, along the longest side of all points
 constexpr double some_roundings = 1e-14; ///< relative: above what some ten operations in double err by
-/// Balls stay as they are where a pose, which is rigid within 1e-6 alone, shrinks the places of their centres.
+/// The share by which boxes grow. A pose is rigid only within 1e-6: it may shrink the places of centres, but the balls
+/// about them keep their radii.
 constexpr double pose_stretch = 4e-6;
 constexpr double all_of_space = std::numeric_limits<double>::infinity();
 

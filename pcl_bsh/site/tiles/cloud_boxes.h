@@ -13,8 +13,8 @@
 
 namespace pcl_bsh::site {
 
-/// The box about a box that is moved, and larger by `reach` on all sides. Its rounding is paid for. All of space where
-/// numbers overflow.
+/// Returns a box that holds the moved box, grown by `reach` on all sides and by a bound of the rounding. It has no
+/// limit on an axis on which numbers overflow.
 Bounds moved(const Bounds& box, const Eigen::Isometry3d& pose, double reach);
 
 /// Whether they have a point in common.
@@ -26,7 +26,8 @@ double leastDistance(const Bounds& a, const Bounds& b);
 /// The smallest box about both.
 Bounds joined(const Bounds& a, const Bounds& b);
 
-/// Whether a point, moved by a pose, may be within a distance of a box: asked of many points, which lie in a box.
+/// Tells whether a point, moved by a pose, may be within a distance of a box. It is for many points, all of which lie
+/// in the box `points`.
 class PointsNear {
 public:
   PointsNear(const Bounds& box, double distance, const Bounds& points, const Eigen::Isometry3d& pose);
@@ -43,7 +44,7 @@ public:
   }
 
 private:
-  Bounds grown_; ///< by the distance, and what the places' rounding may be
+  Bounds grown_; ///< the box, grown by the distance and a bound of the places' rounding
   std::array<std::array<double, 4>, 3> rows_;
 };
 
@@ -53,7 +54,7 @@ class CloudBoxes {
 public:
   explicit CloudBoxes(const PointsView& points);
 
-  /// The box about points that are not at hand.
+  /// One box about points that are not in memory.
   explicit CloudBoxes(const Bounds& box) : whole_(box), parts_{box} {}
 
   bool empty() const noexcept { return parts_.empty(); }

@@ -13,18 +13,19 @@
 
 namespace pcl_bsh::site {
 
-/// Refuses an uncertainty that the points of the site cannot have, although no tile may be read.
+/// Refuses an uncertainty that the points of the site cannot have, also where no tile will be read.
 /// @throws std::invalid_argument as withUncertainty() does. @throws files::FileError for a field of which site.json
 ///   does not say how large its values are
 void requireUncertainty(const Site& site, const Uncertainty& uncertainty);
 
-/// How far from where it was measured a point of a tile may truly be, at most. @pre the tile has a box
+/// Returns an upper bound of the distance from a point of a tile as measured to where it may truly be. @pre the tile
+/// has a box
 double straying(const Tile& tile, const Uncertainty& uncertainty);
 
 /// The box about wherever the points of a tile may truly be. @pre it has one
 Bounds trueBounds(const Tile& tile, const Uncertainty& uncertainty);
 
-/// Boxes about parts of a cloud where it stands. Two steps of rounding are paid for by each of both.
+/// Returns boxes about the parts of a cloud where it stands. Each is grown by a bound of the rounding.
 std::vector<Bounds> placedParts(const CloudBoxes& boxes, const Eigen::Isometry3d& pose);
 
 /// Tiles that the model may come near to on its way, wherever points truly are.

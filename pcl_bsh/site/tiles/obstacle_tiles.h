@@ -14,11 +14,13 @@ namespace pcl_bsh::site {
 
 class ObstacleTiles {
 public:
-  /// @param memory bytes for tiles that are kept, as the next question may need them, and the hierarchy of one
+  /// @param memory bytes for the tiles that are kept, as the next question may need them, and for the hierarchy of one
+  ///   tile
   /// @throws std::invalid_argument when the largest tile needs more, or its points cannot be so uncertain
   ObstacleTiles(const PlacedSite& site, std::uint64_t memory);
 
-  /// At most the distance of a box in the common frame, wherever points truly are; none: it is greater than this.
+  /// Returns a lower bound of the distance from a box in the common frame to the points, wherever these truly are.
+  /// None: it is greater than `distance`.
   std::optional<double> lowerBound(const Bounds& box, double distance) const;
 
   /// Calls compare(tile, its points that may be near, where they stand), the nearest tiles first, while tiles are
@@ -33,7 +35,7 @@ public:
     }
   }
 
-  /// All points of a tile. The view is good until this changes.
+  /// All points of a tile. The view is valid until another tile is asked for.
   PointsView points(std::uint32_t tile);
 
   /// The tile that was asked for last.

@@ -13,11 +13,11 @@ namespace pcl_bsh::site {
 /// The space about a model's points that counts, too.
 struct PathReach {
   double distance = 0.0; ///< places within this distance count
-  bool moves = false;    ///< the motion between poses counts, too, about the origin of the model's frame
+  bool moves = false;    ///< the motion between poses counts, too; it turns about the origin of the model's frame
 };
 
-/// Boxes about a model with its reach at each pose, or on its way from each pose to the next, and about those of pairs,
-/// and so on up to the whole path. The model and the poses are borrowed.
+/// A binary tree of boxes about a model with its reach. A leaf is the box at one pose, or on the way from one pose to
+/// the next; a box above holds two boxes, the uppermost the whole path. The model and the poses are borrowed.
 class PathBoxes {
 public:
   PathBoxes(const CloudBoxes& model, const std::vector<Eigen::Isometry3d>& poses, const PathReach& reach);
@@ -37,7 +37,7 @@ private:
   const std::vector<Eigen::Isometry3d>& poses_;
   PathReach reach_;
   double arm_ = 0.0;                        ///< no part of the model is farther from its origin
-  std::vector<std::vector<Bounds>> levels_; ///< steps of the path, then pairs of what is below; empty: nothing to reach
+  std::vector<std::vector<Bounds>> levels_; ///< boxes of steps, then of pairs of boxes below; empty: nothing to reach
 };
 
 } // namespace pcl_bsh::site

@@ -19,7 +19,7 @@ bool isOwn(const std::string& name)
   return name == source_field_name || name == record_field_name;
 }
 
-/// A record in which nothing is known.
+/// Returns a record without values: NaN, or 0 in fields of whole numbers.
 std::vector<std::uint8_t> blankRecord(const pcl::PCLPointCloud2& layout)
 {
   std::vector<std::uint8_t> record(layout.point_step, 0);

@@ -30,8 +30,8 @@ bool isSame(const Fields& a, const Fields& b)
   });
 }
 
-/// Returns the greatest value of finite points; nothing where they have NaN alone. Infinite ones are the largest
-/// numbers.
+/// Returns the greatest value of finite points; nothing where all their values are NaN. An infinite value counts as the
+/// largest number of its sign.
 template <typename Real>
 std::optional<double> greatestOf(const pcl::PCLPointCloud2& cloud, const PointsView& view, std::size_t offset)
 {
@@ -47,7 +47,7 @@ std::optional<double> greatestOf(const pcl::PCLPointCloud2& cloud, const PointsV
   return greatest;
 }
 
-/// The header while the number of points is not known.
+/// Returns the longest header, which holds the place while the number of points is not known.
 std::string longestHead(const Fields& fields)
 {
   return io::binaryPcdHeader(fields, static_cast<std::uint32_t>(io::max_points));

@@ -21,7 +21,7 @@ public:
   /// @param buffer bytes that are collected before they are written
   TileFile(files::NewFile& file, const Fields& fields, std::size_t buffer);
 
-  /// Goes on with a file to whose end so many points have been flushed.
+  /// Goes on with a file that holds so many points, all of which have been flushed.
   TileFile(files::NewFile& file, const Fields& fields, std::size_t buffer, std::uint64_t points);
 
   /// Returns the bytes of a file of so many points before it is finished.
@@ -33,7 +33,7 @@ public:
   /// @param record of these fields, `bytes` long
   void add(const std::uint8_t* record, std::size_t bytes);
 
-  /// Writes what is left, and the header. The buffer is given back.
+  /// Writes what is left, and the header. Frees the buffer.
   void finish();
 
   std::uint64_t points() const noexcept { return points_; }
@@ -51,7 +51,7 @@ private:
 /// its overview.
 std::uint64_t diskSpaceOf(const Fields& fields, std::uint64_t points, std::uint64_t tiles, std::uint64_t overview);
 
-/// Points of a site for one of its overview, which has `most` at most. @pre most > 0
+/// Returns n, where the overview has one of every n points of a site, and `most` points at most. @pre most > 0
 inline std::uint64_t overviewStep(std::uint64_t points, std::uint64_t most)
 {
   return points <= most ? 1 : (points - 1) / most + 1;

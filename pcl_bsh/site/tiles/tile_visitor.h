@@ -54,7 +54,7 @@ public:
 
   /// Calls `use` with each of these tiles, on one of the ranks: each takes the next tile, or run of so many, when it
   /// has done one. To be called by all ranks with the same list.
-  /// @param still whether a tile is not left out, asked just before it is read; null: none is
+  /// @param still whether a tile is still needed, asked just before it is read; null: all are
   /// @throws what reading or `use` throws; where another rank has failed, std::runtime_error
   void visitAll(const std::vector<std::uint32_t>& tiles, const Use& use, std::size_t run = 1,
                 const std::function<bool(std::uint32_t)>& still = nullptr);
