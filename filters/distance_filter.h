@@ -47,8 +47,8 @@ public:
   using DistanceFilterBase<PointT>::DistanceFilterBase;
   using DistanceFilterBase<PointT>::setIndices;
 
-  /// PCL's, for a rectangle of the input, except that the former indices stay where memory runs out: PCL's would go on
-  /// with none.
+  /// As PCL's, for a rectangle of the input. Where memory runs out, the former indices stay; PCL's would go on with
+  /// none.
   void setIndices(std::size_t row_start, std::size_t col_start, std::size_t nb_rows, std::size_t nb_cols) override;
 };
 

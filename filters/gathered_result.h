@@ -17,7 +17,8 @@ namespace pcl_bsh {
 /// Gives each group the gravest result of its triangles: colliding before undecided before free, the smallest distance
 /// with its pose and nearest point, the first pose. A group of no triangle is free. Parts that the result does not have
 /// stay empty; summaries of poses, which count triangles, are left out.
-/// @param groupsOf from the number of a triangle to a range of those of its groups, each below `groups`
+/// @param groupsOf called with the index of a triangle, returns a range of the indices of its groups, each below
+///   `groups`
 template <typename GroupsOf>
 TrajectoryResult gatheredResult(const TrajectoryResult& found, std::size_t groups, const GroupsOf& groupsOf)
 {

@@ -18,7 +18,7 @@ namespace pcl_bsh {
 
 /// `chainage` (FLOAT64), `offset`, `height` and `clearance` (FLOAT32, NaN without one), `envelope` (INT32, -1 where no
 /// envelope of its track counts) and `place` (UINT8, a PlaceState). Where tracks have names, `track` (INT32), too: the
-/// number of the one that the point is told with, or -1.
+/// index of the track that the point's values are of, or -1.
 class GaugeFields {
 public:
   /// @param tracks all of them, at least one
@@ -38,7 +38,7 @@ private:
   std::vector<std::uint8_t> place_;
 };
 
-/// Where a cloud's points have their times.
+/// Returns where the records of a cloud hold their times.
 /// @param name of the field; empty: the first of gps_time, time, timestamp, timeStamp and t
 /// @throws InvalidInput naming the field that is missing, or of another type than FLOAT32 and FLOAT64
 TimeField timeFieldOf(const pcl::PCLPointCloud2& cloud, const std::string& name);

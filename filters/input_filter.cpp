@@ -9,7 +9,7 @@ namespace pcl_bsh {
 void InputFilter<pcl::PCLPointCloud2>::setInputCloud(const PCLPointCloud2ConstPtr& cloud)
 {
   if (!cloud) throw std::invalid_argument("input cloud is null: give an empty cloud if there are no points");
-  field_sizes_.reserve(cloud->fields.size()); // PCL's takes the cloud before it has room for these
+  field_sizes_.reserve(cloud->fields.size()); // PCL's would take the cloud first, then allocate them
   numberPoints(std::size_t{cloud->width} * cloud->height);
   NumberedFilter<pcl::PCLPointCloud2>::setInputCloud(cloud);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// PCL's base of filters, with an input that is never half taken.
+// PCL's base of filters. When memory runs out in setInputCloud(), the former input stays.
 #pragma once
 
 #include <pcl_bsh/export.h>
@@ -17,7 +17,7 @@ PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
 /// PCL numbers all points of the input in filter(), where the user has set no indices. When memory runs out there, PCL
-/// 1.15 prints a line and filters nothing: here the numbers are there before.
+/// 1.15 prints a line and filters nothing. So this class makes the numbers before.
 template <typename PointT>
 class NumberedFilter : public pcl::FilterIndices<PointT> {
 public:

@@ -22,9 +22,9 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// The obstacle, its pose and all other settings are those of CollisionFilter (CollisionSettings). The counts of
-/// undecided points are those of undecided polygons. A density guard is refused, and so is an uncertainty of the input
-/// that is a field: both are about points. The inside of a closed mesh belongs to it only with setInputSolid().
+/// The obstacle, its pose and all other settings are those of CollisionFilter (CollisionSettings). Undecided polygons
+/// are counted in place of undecided points. A density guard is refused, and so is an uncertainty of the input that is
+/// a field: both are about points. The inside of a closed mesh belongs to it only with setInputSolid().
 class MeshCollisionFilter : public CollisionSettings {
 public:
   /// The mesh that is asked about. Its vertices and polygons must not change: every use throws when they have, after a
@@ -32,11 +32,11 @@ public:
   /// @throws std::invalid_argument when the pointer is null, or as viewOf() does; then the former input stays
   void setInputMesh(const pcl::PolygonMesh::ConstPtr& mesh);
 
-  /// Triangles wherever they are, each a polygon. They must not change. filter() needs a mesh, and throws.
+  /// Sets triangles in place of a mesh, each a polygon. They must not change. filter() throws then, as it needs a mesh.
   /// @throws std::invalid_argument as viewOf() does
   void setInputSurface(const TrianglesView& triangles);
 
-  /// The input counts with what its faces enclose, and they must close, as setObstacleSolid() has it: polygons of each
+  /// true: the input includes what its faces enclose, and they must close, as for setObstacleSolid(). All polygons of a
   /// body that holds something of the obstacle collide. Default: false, a surface alone.
   void setInputSolid(bool solid) { question_.input_solid = solid; }
 
@@ -61,7 +61,7 @@ private:
   TrajectoryResult ofPolygons(TrajectoryResult found);
 
   std::optional<PointsView> triangles_;
-  std::vector<std::uint32_t> polygons_; ///< of the mesh, of each triangle
+  std::vector<std::uint32_t> polygons_; ///< of each triangle, the polygon of the mesh
   pcl::PolygonMesh::ConstPtr mesh_;
   std::uint64_t checksum_ = 0; ///< of the mesh when it was set
   bool negative_ = false;

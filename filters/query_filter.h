@@ -54,7 +54,7 @@ protected:
   Shape inputShape() const { return this->inputOf(inputView(), *this->input_); }
   PointsView inputView() const;
 
-  /// By what passing() told of them.
+  /// Divides the input's records into kept and removed ones, by the answer of passing().
   void select(const std::vector<std::uint8_t>& passes, pcl::Indices& kept, pcl::Indices* removed) const
   {
     partRecords(inputView(), passes, this->negative_, kept, removed);

@@ -38,7 +38,7 @@ inline std::vector<RecordField> fieldsOfRecords(const pcl::PCLPointCloud2& cloud
   return recordFields(cloud.fields);
 }
 
-/// The triangles that a mesh's polygons are cut into (addTriangles()): as records of a mesh, results name these.
+/// The triangles that a mesh's polygons are cut into (addTriangles()). Results about a mesh name triangles as records.
 struct MeshTriangles {
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> polygons; ///< which polygon each is a part of
@@ -54,7 +54,7 @@ PointsView viewOf(const pcl::PolygonMesh::ConstPtr& mesh);
 /// The settings of a question. A setting without a meaning makes filtering throw. Lengths are in the clouds' own unit.
 class QuestionFilter {
 public:
-  /// All settings at once, and what they are; also of those that have no setter here. `wanted` is for filters to say.
+  /// Sets, and returns, all settings at once, also those that have no setter here. `wanted` is for filters to say.
   void setQuestion(const Question& question) { question_ = question; }
   const Question& getQuestion() const { return question_; }
 
@@ -77,7 +77,7 @@ public:
   /// @throws std::invalid_argument as viewOf() does
   void setObstacleSurface(const pcl::PolygonMesh::ConstPtr& mesh) { setSurface(viewOf(mesh)); }
 
-  /// Sets triangles wherever they are. @throws std::invalid_argument as viewOf() does
+  /// Sets triangles that are in no pcl::PolygonMesh. @throws std::invalid_argument as viewOf() does
   void setObstacleSurface(const TrianglesView& triangles) { setSurface(viewOf(triangles)); }
 
   /// Pose of the obstacle in the input's frame, T_input_obstacle. Rigid within 1e-6 (default: identity). Takes any of
@@ -94,9 +94,9 @@ public:
     question_.path.reset();
   }
 
-  /// An obstacle surface counts with what its faces enclose, and they must close: filtering throws where they do not,
-  /// and names the first open edge. Its inside collides at any clearance; distances there are negative, and limits of
-  /// distances may be. Default: false, a surface alone.
+  /// true: an obstacle surface includes what its faces enclose. The faces must close: filtering throws where they do
+  /// not, and names the first open edge. Its inside collides at any clearance; distances there are negative, and limits
+  /// of distances may be. Default: false, a surface alone.
   void setObstacleSolid(bool solid) { question_.solid = solid; }
 
   /// How sure the answer has to be: less is faster. Default: exact. Filters say what they do with one that stops early.
@@ -122,14 +122,14 @@ public:
   /// uncertain, or the density guard is on.
   std::size_t getUndecidedCount() const { return undecided_; }
 
-  /// How many of them because the obstacle is not scanned densely enough.
+  /// How many points it left undecided because the obstacle is not scanned densely enough.
   std::size_t getSparseCount() const { return sparse_; }
 
   /// The part of the obstacle that the last query found unseen (setSeenOnly()).
   const Answer::Unseen& getUnseen() const { return unseen_; }
 
-  /// Verdicts of the obstacle's points then, as numbers: 0 free, 1 collides, 2 undecided, 4 unseen; along a trajectory
-  /// the gravest of its poses. Empty without setSeenOnly().
+  /// Verdicts of the obstacle's points in the last query, as numbers: 0 free, 1 collides, 2 undecided, 4 unseen; along
+  /// a trajectory the gravest of its poses. Empty without setSeenOnly().
   const std::vector<Verdict>& getObstacleFlags() const { return obstacle_flags_; }
 
 protected:
@@ -138,12 +138,13 @@ protected:
   QuestionFilter(const QuestionFilter&) = default;
   QuestionFilter& operator=(const QuestionFilter& other)
   {
-    return *this = QuestionFilter(other); // moving allocates nothing: all of it, or std::bad_alloc and nothing
+    return *this = QuestionFilter(other); // the copy may throw, the move does not: all is assigned or nothing
   }
   QuestionFilter(QuestionFilter&&) = default;
   QuestionFilter& operator=(QuestionFilter&&) = default;
 
-  /// Asks, and tells what is new. @throws std::invalid_argument when the obstacle is missing, and as ask() does
+  /// Asks the question, and tells the warnings that are new. @throws std::invalid_argument when the obstacle is
+  /// missing, and as ask() does
   Answer answer(Shape input, const Wanted& wanted);
 
   /// Points, with the uncertainties of the question. @param fields of their records
@@ -167,15 +168,15 @@ private:
   Shape obstacle_;
   std::function<void(const std::string&)> warn_; ///< empty: PCL_WARN
   WarningsOnce warnings_;
-  bool measured_ = false; ///< spacings
+  bool measured_ = false; ///< whether spacings were measured
   Work work_;
   std::size_t sparse_ = 0;
   Answer::Unseen unseen_;
   std::vector<Verdict> obstacle_flags_;
 };
 
-/// Parts the input's records, in their order, into those that are kept and the rest, where points that are not finite
-/// always are. `kept` may be the very list that the input is seen through.
+/// Divides the input's records, in their order, into kept and removed ones. Points that are not finite are always
+/// removed. `kept` may be the very list of indices that `input` is a view of.
 /// @param passes one per record: 1 for those that are kept; if `negative`, those that are not
 /// @param removed may be null
 void partRecords(const PointsView& input, const std::vector<std::uint8_t>& passes, bool negative, pcl::Indices& kept,
@@ -236,11 +237,11 @@ public:
   /// Where the input's scanners stood, in its frame; with setSeenOnly() alone.
   void setScanOrigins(const ScanOrigins& origins) { question_.origin = origins; }
 
-  /// The angle for which a beam speaks, in radians, in [1e-4, 0.25]; 0 (default): measured of each scan.
+  /// SeenOptions::angle of the beams, in radians, in [1e-4, 0.25]; 0 (default): measured of each scan.
   void setSeenAngle(double angle) { question_.seen_angle = angle == 0.0 ? std::nullopt : std::optional(angle); }
 
-  /// Which points of the input, and of the obstacle, do not count; their beams and their density do. A field's name is
-  /// one of the cloud's. Default: all count.
+  /// The points of the input, and of the obstacle, that are not compared; their beams and their density still count. A
+  /// field's name is one of the cloud's. Default: all count.
   void setIgnoredPoints(const IgnoredPoints& ignored) { question_.ignore_points = ignored; }
   void setIgnoredObstaclePoints(const IgnoredPoints& ignored) { question_.obstacle_ignore_points = ignored; }
 
@@ -253,10 +254,10 @@ protected:
   /// One per record of the input, or per triangle of its surface.
   std::vector<Verdict> collisionFlags(Shape input);
 
-  /// Everything that is known of each along the trajectory, or at the one pose.
+  /// Returns all that is known of each record along the trajectory, or at the one pose.
   TrajectoryResult alongTrajectory(Shape input);
 
-  /// 1: free.
+  /// One per record: 1 where it is free, else 0.
   std::vector<std::uint8_t> passing(Shape input);
 
 private:
@@ -274,7 +275,7 @@ public:
   /// inside of a solid.
   void setFilterLimits(double least, double most) { question_.limits = {least, most}; }
 
-  /// Greater distances are not told but as NaN; which points are kept does not depend on it. >= 0, inclusive. Default:
+  /// Greater distances are told as NaN; which points are kept does not depend on it. >= 0, inclusive. Default:
   /// infinity, no limit. A small one is faster.
   void setMaxDistance(double max_distance) { question_.max_distance = max_distance; }
 

@@ -75,7 +75,7 @@ Json rowSchema(const std::vector<Option>& options)
   return {{"type", "object"}, {"properties", properties}, {"required", required}, {"additionalProperties", false}};
 }
 
-/// All that an object with one of the type's names as its type may say.
+/// Returns the schema of an object whose `type` is one of the names of this type of stage.
 Json stageSchema(const StageType& type)
 {
   Json names = {type.name};

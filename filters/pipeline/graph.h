@@ -20,7 +20,7 @@ namespace pcl_bsh::pipeline {
 
 using io::Json;
 
-/// An OtherCloud that is given: by an option or by one of its rows, and the node that makes it.
+/// Tells, by indices, which option of a node, or which row of the option, names another cloud, and which node makes it.
 struct CloudOfOption {
   std::size_t option = 0;
   std::size_t node = 0;
@@ -38,7 +38,7 @@ struct Node {
   bool in_document = true; ///< else it reads a file that another stage's option names
   std::vector<std::pair<std::string, std::filesystem::path>> pose_files; ///< option and file, read with the document
   std::vector<std::string> warnings;                                     ///< of its options, a line each
-  StageCloudPtr given;                                                   ///< instead of a reader's file
+  StageCloudPtr given;                                                   ///< what a reader takes instead of its file
 };
 
 struct Graph {
@@ -48,7 +48,7 @@ struct Graph {
   std::vector<files::UsedFile> other_files; ///< not of stages: the document, and what the caller will write
   unsigned threads = 0;
   std::function<void(const StageProgress&)> progress;
-  std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false); ///< no run has ended yet
+  std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false); ///< cancel() is pending
 };
 
 /// @throws PipelineError

@@ -100,7 +100,7 @@ std::string nameOf(const Json& json, const Option& option)
   return name;
 }
 
-/// The value of a form that fits.
+/// Reads JSON that fits a form.
 Value read(const Form& form, const Json& json, const Option& option)
 {
   switch (form.type) {
@@ -151,7 +151,7 @@ Value poseOf(const Value& given, const Json& json)
   return OptionType<Pose>::to(pose);
 }
 
-/// The words of messages for a kind, of which a range comes before `rest`; and its forms.
+/// The words of messages for a kind, and its forms. In messages, a range stands between `phrase` and `rest`.
 struct KindRow {
   Kind kind;
   const char* phrase;

@@ -31,7 +31,8 @@ const std::vector<Form>& formsOf(Kind kind);
 /// The values that are allowed: "a number above 0", "one of free, colliding".
 std::string expectation(const Option& option);
 
-/// Rows have values that the parser reads one by one, with their places in errors.
+/// Returns the value that an option's JSON stands for. A list of rows is returned empty: the parser reads each value of
+/// a row by itself, so that errors have its place.
 /// @throws std::invalid_argument `is X: give EXPECTATION`
 PCL_BSH_EXPORT_INTERNAL Value valueOf(const Json& json, const Option& option);
 

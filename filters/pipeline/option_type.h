@@ -137,7 +137,7 @@ struct HeldType {
   static Value to(const T& option) { return option; }
 };
 
-/// Conversion of a type that a name stands for. @param name its member
+/// Conversion of a struct that is written as a name. @param name the member that holds it
 template <typename T, std::string T::*name, Kind K>
 struct NamedType {
   static constexpr Kind kind = K;

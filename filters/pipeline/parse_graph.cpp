@@ -385,7 +385,7 @@ private:
   const std::vector<OptionOverride>& overrides_;
   std::vector<bool> used_;                     ///< of the overrides
   std::set<std::string> given_tags_;           ///< of the whole document
-  std::map<std::string, std::size_t> made_up_; ///< by how they begin: the last number
+  std::map<std::string, std::size_t> made_up_; ///< of tags with this beginning, the last number
   std::size_t previous_ = 0;                   ///< the node of the document's last stage so far
 };
 

@@ -101,7 +101,7 @@ public:
   /// the fields that are needed, and that outputs can be written. No points are read. @throws PipelineError
   void validate();
 
-  /// Validates, then runs. A cloud is freed once its last reader has it done. Can be called again, after an error too.
+  /// Validates, then runs. A cloud is freed once its last reader is done. Can be called again, after an error too.
   /// @throws PipelineError when a stage fails; of several, the first in the document. Cancelled
   ///   (pcl_bsh/base/cancelled.h) when cancel() was called; what the progress callback throws
   PipelineResult run();

@@ -27,7 +27,7 @@ std::unique_ptr<Stage> makeStage(const Node& node, const Headers& headers)
 /// The files of a pipeline, and whose they are.
 struct PipelineFiles {
   std::vector<files::UsedFile> used;
-  std::vector<std::pair<const Node*, std::string>> owners; ///< stage and option, where a stage's they are
+  std::vector<std::pair<const Node*, std::string>> owners; ///< stage and option of each file of a stage
 
   void add(const Node& node, const std::string& option, const fs::path& path, files::Use use, std::string replaces = {})
   {
@@ -67,8 +67,8 @@ PipelineFiles filesOf(const Graph& graph)
   return all;
 }
 
-/// Two stages that write one file, or one that writes what another reads, would race, or leave the user without his
-/// scan.
+/// Refuses two stages that write one file, or one that writes what another reads: they would race, or leave the user
+/// without his scan.
 void requireFilesApart(const Graph& graph)
 {
   const PipelineFiles all = filesOf(graph);

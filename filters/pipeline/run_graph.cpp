@@ -175,7 +175,7 @@ private:
     addTasks(ready_.size() - ready_before);
   }
 
-  /// A cloud goes to its last reader for good.
+  /// Returns a stage's cloud to a reader; the last one gets the only pointer.
   StageCloudPtr take(std::size_t producer)
   {
     return --readers_left_[producer] == 0 ? std::move(clouds_[producer]) : clouds_[producer];
@@ -255,7 +255,7 @@ private:
     return is_asked && *is_asked;
   }
 
-  /// A point that a stage before this one removed has no beam any more.
+  /// Warns of points that stages before this one removed, as their beams are lost for `seen`.
   void addLostBeams(const Node& node, std::vector<std::string>& warnings) const
   {
     std::set<std::size_t> before;
@@ -326,7 +326,7 @@ private:
 PipelineResult runGraph(const Graph& graph)
 {
   if (graph.cancelled->exchange(false)) throw Cancelled();
-  struct RequestEnds { // with this run, however that ends
+  struct RequestEnds { // a request to cancel ends with this run, however the run ends
     ~RequestEnds() { cancelled = false; }
     std::atomic<bool>& cancelled;
   };

@@ -37,12 +37,13 @@ struct StageCloud {
   std::shared_ptr<const io::LasHeader> las_header = nullptr;
   /// Viewpoints of each scan's sensor, for clouds whose field `scan` numbers them from 0; or of the only one.
   std::vector<std::array<double, 7>> scanners = {};
-  std::shared_ptr<const std::vector<Triangle>> triangles = nullptr; ///< by records of `cloud`; null where it is no mesh
+  std::shared_ptr<const std::vector<Triangle>> triangles = nullptr; ///< corners are records of `cloud`; null: no mesh
   std::vector<FaceProperty> face_properties = {};                   ///< empty where it is no mesh
-  /// Why a file's points say less than the file: it joins them by lines, edges ... and has no faces. Empty else.
+  /// Why the points alone say less than their file: it joins them by lines, edges ... and has no faces. Otherwise
+  /// empty.
   std::string corners_alone = {};
   std::string coordinate_system = {}; ///< as a LAS or E57 file names it; else empty
-  std::string system_definition = {}; ///< of that: codes or WKT; empty where it is not known, and once points are moved
+  std::string system_definition = {}; ///< its codes or WKT; empty where it is not known, and once points are moved
 };
 
 /// Several stages may read one cloud, so it does not change.

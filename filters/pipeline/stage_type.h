@@ -53,7 +53,7 @@ struct StageType {
   std::string doc;
   std::size_t least_inputs = 1;
   std::size_t most_inputs = 1;
-  std::vector<std::string> extensions; ///< of files that a mere file name stands for this stage
+  std::vector<std::string> extensions; ///< of files whose mere name in a document stands for this stage
   std::vector<Option> options;
   std::function<std::unique_ptr<Stage>()> make;
 
@@ -61,12 +61,13 @@ struct StageType {
   bool isWriter() const { return name.rfind("writers.", 0) == 0; } ///< ends in a file
   const Option* findOption(const std::string& option) const;       ///< by name; null where no option has it
 
-  /// Its standard is what a new stage has. Not inline: GCC 12 sees a Value free what it never held.
+  /// Adds an option; its standard becomes the value in a new stage. Not inline: GCC 12 sees a Value free what it never
+  /// held.
   void addOption(Option option);
 };
 
-/// Fills in a StageType. Each option() is a member of S, whose type and initial value are the option's; what follows
-/// it refines it.
+/// Fills in a StageType. Each option() adds a member of S: the member's type and initial value are those of the option.
+/// The calls that follow it refine it.
 template <typename S>
 class StageDescription {
 public:
@@ -124,7 +125,7 @@ public:
     return *this;
   }
 
-  /// A row that is made already; `set` and `get` are of S.
+  /// Adds an option that is made already; its `set` and `get` are for stages of type S.
   StageDescription& option(Option option)
   {
     type_.addOption(std::move(option));
@@ -171,7 +172,7 @@ public:
     return *this;
   }
 
-  /// An input file that an output of the same stage may replace: plan() reads it.
+  /// Lets an output of the same stage replace the last option's input file, as plan() has read it by then.
   StageDescription& replaceable()
   {
     last().replaceable = true;

@@ -44,7 +44,7 @@ protected:
   std::vector<std::uint8_t> passing(const StageCloudPtr& /*cloud*/) override { return std::move(within_); }
 
 private:
-  /// The distances of triangles become a property of theirs; vertices get the smallest distance of their triangles.
+  /// Distances of triangles become a property of their faces; vertices get the smallest distance of their triangles.
   StageCloudPtr measuredFaces(StageCloudPtr&& input, Answer answer) const
   {
     const std::vector<Triangle>& triangles = *input->triangles;
@@ -66,7 +66,7 @@ private:
     return withFields(cloud, {{distance_field_name, &told}});
   }
 
-  /// As a double, which distances are, too.
+  /// Returns a limit as a double, which distances are, too; `none` where there is no limit.
   static double limitOf(const Limit& limit, double none)
   {
     return std::visit(

@@ -58,7 +58,7 @@ private:
   /// Reads the facts about the list that are known before clouds are read.
   void readListing()
   {
-    std::vector<std::string> names, warnings; // those of poses are told
+    std::vector<std::string> names, warnings; // plan() has told those of poses
     std::vector<io::ComparedObstacle> compared;
     for (auto& [row, one, shape] : asked(warnings)) {
       if (!one.name.empty()) names.push_back(one.name);
@@ -106,7 +106,7 @@ private:
   }
 
   IgnoredPairs ignored_;
-  std::set<std::string> unasked_; ///< names of obstacles that `previous` tells of
+  std::set<std::string> unasked_; ///< names of obstacles whose clashes are those of `previous`
   io::ClashListing listing_;
 };
 

@@ -67,7 +67,7 @@ private:
     const std::string warning = roundingWarning(points, cluster_tolerance);
     if (!warning.empty()) warn(warning);
 
-    // Unsorted: of sorted neighbours PCL skips the first as the point itself, which its duplicate may be.
+    // Unsorted: PCL skips the first of sorted neighbours as the point itself, but it may be a duplicate of the point.
     const auto search = std::make_shared<pcl::search::KdTree<pcl::PointXYZ>>(false);
     pcl::EuclideanClusterExtraction<pcl::PointXYZ> extraction;
     setInput(extraction, points);

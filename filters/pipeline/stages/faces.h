@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The triangles of a cloud in a pipeline: what is found out about them, and some of them alone.
+// The triangles of a cloud in a pipeline: sets properties of them, and keeps some of them.
 #pragma once
 
 #include <pcl_bsh/filters/pipeline/stage_cloud.h>

@@ -162,7 +162,7 @@ protected:
   }
 };
 
-/// With faces, if the cloud has them, and what was found out about them.
+/// Writes faces, too, if the cloud has them, with their properties.
 struct PlyWriter : FileWriter {
   StageCloudPtr run(StageClouds&& inputs) override
   {

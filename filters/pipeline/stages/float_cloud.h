@@ -19,7 +19,7 @@ namespace pcl_bsh::pipeline {
 /// The finite points, as float32 relative to an origin. PCL's search aborts the program on points that are not finite.
 struct FloatCloud {
   pcl::PointCloud<pcl::PointXYZ>::Ptr points; ///< one row: so searches are by k-d tree, right for any sensor
-  std::vector<std::uint32_t> records;         ///< of the cloud that each of them was
+  std::vector<std::uint32_t> records;         ///< of each of these points, its record in the cloud
   Point3 origin = {0, 0, 0};                  ///< of float32 clouds 0, of float64 ones the middle of the points
   double moved = 0;                           ///< the most that rounding to float32 changed a coordinate
 };
@@ -37,8 +37,8 @@ void setInput(Algorithm& algorithm, const FloatCloud& cloud)
   algorithm.setIndices(all);
 }
 
-/// How far neighbours are apart, half of them or more, where a search counts neighbours instead of naming a length.
-/// Infinite where nothing was rounded.
+/// Returns the median distance of points from their nearest neighbours: the length to compare rounding with, where a
+/// search counts neighbours instead of naming a length. Infinite where nothing was rounded.
 double neighbourSpacing(const PointsView& points, const FloatCloud& cloud);
 
 /// Warning for distances that are compared with `length`; empty where rounding does not matter.

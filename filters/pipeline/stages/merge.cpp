@@ -65,7 +65,7 @@ struct Merge : Stage {
         scans += count;
       }
       if (input->cloud.is_dense == 0) merged.is_dense = 0;
-      if (input->viewpoint != output->viewpoint) output->viewpoint = io::no_viewpoint; // it would be that of some
+      if (input->viewpoint != output->viewpoint) output->viewpoint = io::no_viewpoint; // some have another
       input.reset();
     }
     if (output->scanners.size() != scans)

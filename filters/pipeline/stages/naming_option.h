@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Errors of what an option names, as errors of that option.
+// Turns errors about the thing that an option names into errors about the option.
 #pragma once
 
 #include <pcl_bsh/base/invalid_input.h>

@@ -10,7 +10,7 @@
 namespace pcl_bsh::pipeline {
 
 /// Refuses a cloud whose coordinate system is known to be another than that of a stage's input.
-/// @param option that the cloud is given by. @param stage that warns where it is not known
+/// @param option the option that gives the other cloud. @param stage the stage that warns where a system is not known
 inline void requireOneSystem(const StageCloud& input, const StageCloud& other, const std::string& option, Stage& stage)
 {
   if (input.system_definition.empty() || other.system_definition.empty()) return;

@@ -39,7 +39,7 @@ Eigen::Isometry3d rigidPoseOf(const Pose& pose, const std::string& option, std::
   return rigid.pose;
 }
 
-/// By the fields of a cloud to come: its points are seen when the stage runs.
+/// Checks an uncertainty by the fields of a cloud. Its points are checked when the stage runs.
 void checkField(const std::string& option, const Uncertainty& uncertainty, const CloudHeader& cloud)
 {
   namingOption(option, [&] { withUncertainty(PointsView(), cloud.fields, "cloud", uncertainty); });
@@ -66,7 +66,7 @@ void warnOfUnseen(const Answer::Unseen& unseen, const std::string& part, const s
              std::to_string(unseen.in_shadow) + " in shadow, " + std::to_string(unseen.inSkin()) + " in the skin)");
 }
 
-/// The shape as which a cloud is compared. @param option whose cloud it is, in errors
+/// Returns the shape as which a cloud is compared. @param option the option that gives the cloud, for errors
 io::Obstacle shapeOf(const StageCloudPtr& cloud, const Question& question, const std::string& option)
 {
   if (!cloud->corners_alone.empty() && !question.vertices_only)
@@ -199,7 +199,7 @@ Option optionOf(const QuestionOption& row, std::function<Question&(Stage&)> ques
 void refuse(const InvalidInput& error, const Question& question)
 {
   std::string name = pcl_bsh::optionOf(error, question);
-  if (name.empty()) throw; // of a catch
+  if (name.empty()) throw; // within a catch
   const QuestionOption* const row = questionOption(name);
   if (row && row->name_of_stages) name = row->name_of_stages;
   throw OptionError(name == "path" ? "trajectory" : name, error.advice());
@@ -281,8 +281,8 @@ QuestionStage::AnsweredQuestion QuestionStage::ask(const StageCloudPtr& input, S
   }
   AnsweredQuestion found;
   found.input = shapeOf(input, question, "input").shape("the input");
-  std::vector<std::string> told;    // by plan(), already
-  std::vector<io::Obstacle> shapes; // of a row that are not asked about yet, the next one last
+  std::vector<std::string> told;    // plan() has told these
+  std::vector<io::Obstacle> shapes; // of a row, not asked about yet; the next one last
   for (auto& [row, one, shape] : this->asked(told)) {
     if (shapes.empty()) {
       const std::string option = obstacle ? "obstacle" : placeOf(row, "file");

@@ -18,7 +18,7 @@
 
 namespace pcl_bsh::pipeline {
 
-/// An obstacle of several. Members without a value are those of the question.
+/// One of several obstacles. For a member without a value, that of the question counts.
 struct NamedObstacle {
   std::string name; ///< empty: the file's stem, or the tag
   OtherCloud file;
@@ -44,19 +44,19 @@ protected:
   /// @throws OptionError
   void plan(const CloudHeader& input, const Wanted& wanted, Stage& stage);
 
-  /// An obstacle to come: its cloud is not read.
+  /// An obstacle whose cloud is not read yet.
   struct Asked {
     std::size_t row = 0; ///< of `obstacles`
     io::ComparedObstacle one;
     PlacedShape shape;
   };
 
-  /// The only obstacle, without a name, or several, each with its pose and the question about it.
+  /// Returns the only obstacle, without a name, or all of several, each with its pose and the question about it.
   std::vector<Asked> asked(std::vector<std::string>& warnings) const;
 
   /// A question, and its answer.
   struct AnsweredQuestion {
-    std::vector<io::ComparedObstacle> obstacles; ///< as what they are compared; the only one has no name
+    std::vector<io::ComparedObstacle> obstacles; ///< how each is compared; the only one has no name
     Shape input;
     std::vector<PlacedShape> shapes; ///< of the obstacles
     Answer answer;                   ///< of the only obstacle, or of all together
@@ -87,13 +87,15 @@ protected:
   void requirePoints(const StageCloud& input) const;
 };
 
-/// A row of the core's table as an option of a stage. @param question of a stage
+/// A row of the core's table as an option of a stage. @param question returns the question of a stage
 Option optionOf(const QuestionOption& row, std::function<Question&(Stage&)> question);
 
 /// `obstacles` of a stage.
 Option optionOfObstacles(const std::function<std::vector<NamedObstacle>&(Stage&)>& obstacles);
 
-/// An error of a question, told by the stage's option where it is about one. @throws OptionError, or the error
+/// Throws an error about a question again, as an error about the stage's option where it is about one. @pre within a
+/// catch
+/// @throws OptionError, or the error
 [[noreturn]] void refuse(const InvalidInput& error, const Question& question);
 
 /// Adds the obstacle, where it is, and the question's options.

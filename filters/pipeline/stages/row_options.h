@@ -46,7 +46,7 @@ RowOption<T> rowOption(M T::*member, const char* name, const char* doc)
   return row;
 }
 
-/// @param rows of a stage. @param of_rows their options
+/// @param rows returns the rows of a stage. @param of_rows the options of a row
 template <typename T>
 Option rowsOption(const char* name, const char* doc, std::vector<RowOption<T>> of_rows,
                   std::function<std::vector<T>&(Stage&)> rows)

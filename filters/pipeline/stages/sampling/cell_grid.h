@@ -22,7 +22,7 @@ using Cell = std::array<std::int64_t, 3>;
 /// as long as float can count them; otherwise double.
 class CellGrid {
 public:
-  /// @param option of the stage, which the edge is
+  /// @param option the stage's option that gives the edge, for errors
   /// @throws OptionError when even double cannot count the cells from the origin to the points
   CellGrid(const PointsView& points, const Numbers<3>& edge, std::string option);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One record for several, what pcl::CentroidPoint is to point types, for clouds whose fields are known at run time.
+// Makes one record of several, as pcl::CentroidPoint does of typed points, for clouds whose fields are known at run
+// time.
 #pragma once
 
 #include <pcl_bsh/filters/pipeline/stage_cloud.h>
@@ -18,7 +19,7 @@ public:
   /// @param all_fields otherwise only of x, y and z; the others are the first record's
   RecordMeans(const StageCloud& cloud, bool all_fields);
 
-  /// Room for so many points: growing step by step takes up to three times as much.
+  /// Reserves memory for so many points: growing step by step takes up to three times as much.
   void reserve(std::size_t points) { output_->cloud.data.reserve(points * cloud_.point_step); }
 
   /// Adds one point, the mean of these records, of which there is at least one.
@@ -40,7 +41,7 @@ private:
 
   const pcl::PCLPointCloud2& cloud_;
   std::shared_ptr<StageCloud> output_;
-  std::vector<Part> parts_;                 ///< a field with a count is several
+  std::vector<Part> parts_;                 ///< of a field with a count, one for each
   std::vector<std::size_t> normal_offsets_; ///< three, or none
 };
 

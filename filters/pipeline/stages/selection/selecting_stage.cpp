@@ -34,7 +34,7 @@ StageCloudPtr SelectingStage::run(StageClouds&& inputs)
     return output;
   }
   const auto output = ownCloud(std::move(input));
-  output->triangles.reset(); // whose corners may go
+  output->triangles.reset(); // their corners may be removed
   output->face_properties.clear();
   overwritePoints(output->cloud, removed, filterValue());
   return output;
