@@ -40,7 +40,7 @@ StoredSphere sphereOf(const Storage& storage, const SphereId& id)
 /// Findings of one thread on one level.
 struct LevelFindings {
   LevelCertificate sums;
-  std::vector<SphereId> spheres; ///< in the voxel's own tree
+  std::vector<SphereId> spheres; ///< of this level; above voxels, listTop() adds them
 };
 
 /// Findings below one voxel, its levels from the top down.
@@ -157,7 +157,7 @@ private:
   const Storage& storage_;
   const std::uint32_t index_;
   const Voxel& voxel_;
-  std::vector<std::uint8_t>& held_; ///< per record; each voxel has its own
+  std::vector<std::uint8_t>& held_; ///< per record; voxels share no record
   VoxelFindings findings_;
 };
 
@@ -182,7 +182,7 @@ public:
   }
 
 private:
-  /// Tells the caller of one half of the work, which begins at a share of `from`.
+  /// Returns the callback for the progress of one half of the work, which begins at the share `from`.
   std::function<void(double)> half(double from) const
   {
     if (!options_.progress) return {};
@@ -209,7 +209,7 @@ private:
         if (certificate_.leaks.size() < Certificate::most_leaks) certificate_.leaks.push_back(leak);
     }
     if (storage_.size == 0) return;
-    listTop(above, 0, 0); // only now: each of these spheres was met once per voxel
+    listTop(above, 0, 0); // here, as the checks met each of these spheres once per voxel
     for (const auto* levels : {&above, &own, &below}) {
       for (const LevelFindings& level : *levels) {
         certificate_.levels.push_back(level.sums);
@@ -255,7 +255,7 @@ private:
     }
   }
 
-  /// A sphere to compare with the smallest, and what came of it.
+  /// A sphere to compare with the smallest one, and the result.
   struct Measurement {
     std::size_t level;
     SphereId id;
@@ -307,7 +307,7 @@ private:
     if (!measurement.leaks) measurement.ratio = radiusRatio(frame, sphere, points);
   }
 
-  /// A leaky sphere has no ratio: being too small is no merit.
+  /// Adds the ratio of a sphere. A sphere that leaks has none: it is too small to be compared.
   void count(const Measurement& measurement)
   {
     RadiusRatios& ratios = certificate_.levels[measurement.level].ratio;

@@ -24,7 +24,7 @@ using Kernel = CGAL::Simple_cartesian<Exact>;
 using MinSphere = CGAL::Min_sphere_d<CGAL::Min_sphere_annulus_d_traits_3<Kernel>>;
 using MinSphereOfBalls = CGAL::Min_sphere_of_spheres_d<CGAL::Min_sphere_of_spheres_d_traits_3<Kernel, Exact>>;
 
-/// Distance of a point's ball's far side from a centre, in units, and what double arithmetic may have got wrong.
+/// Distance from a centre to the far side of a point's ball, in units, and a bound of its rounding error.
 struct Reach {
   double value;
   double bound;
@@ -91,8 +91,8 @@ std::vector<std::size_t> farthest(std::vector<Excess>& candidates)
   return points;
 }
 
-/// Where to begin: the points farthest from where the float fit would put the centre. Any choice ends at the same
-/// sphere.
+/// Returns the points to begin with: the farthest from where the float fit would put the centre. Any choice ends at the
+/// same sphere.
 std::vector<std::size_t> firstGuess(const std::vector<CertifiedPoint>& points)
 {
   std::array<std::vector<float>, 3> arrays;
@@ -110,8 +110,8 @@ std::vector<std::size_t> firstGuess(const std::vector<CertifiedPoint>& points)
   return farthest(candidates);
 }
 
-/// The squared radius, in units, of the smallest sphere around the points: that of a few of them which holds all.
-/// Points outside join the few, which only lets it grow, until there are none.
+/// Returns the squared radius, in units, of the smallest sphere around the points. It is the smallest sphere around a
+/// few of them that holds all. Points outside join the few, which makes the sphere grow, until no point is outside.
 Exact minimalSquaredRadius(const LocalFrame& frame, const std::vector<CertifiedPoint>& points)
 {
   std::vector<Kernel::Point_3> few;
@@ -140,7 +140,7 @@ Exact minimalSquaredRadius(const LocalFrame& frame, const std::vector<CertifiedP
   }
 }
 
-/// The root of x > 0: a double's, bettered once by Newton's rule.
+/// The square root of x > 0: computed in double, then improved by one step of Newton's method.
 Exact rootOf(const Exact& x)
 {
   const Exact first = std::sqrt(CGAL::to_double(x));
@@ -148,8 +148,8 @@ Exact rootOf(const Exact& x)
   return (first + x / first) / 2;
 }
 
-/// The radius, in units, of the smallest sphere around the points' balls; as above, but that its centre has roots, so
-/// that whether a ball is inside is known to double precision only.
+/// The radius, in units, of the smallest sphere around the points' balls; as above, except that its centre has square
+/// roots. So whether a ball is inside is known to double precision only.
 Exact minimalRadiusOfBalls(const LocalFrame& frame, const std::vector<CertifiedPoint>& points)
 {
   std::vector<std::size_t> few = firstGuess(points);
@@ -196,7 +196,7 @@ double excess(const LocalFrame& frame, const StoredSphere& sphere, const Certifi
 {
   constexpr double everything = std::numeric_limits<double>::infinity();
   for (const float number : {sphere.x, sphere.y, sphere.z, sphere.r}) {
-    if (std::isnan(number) || std::isinf(number)) // no rational; and what holds everything is no sphere to rely on
+    if (std::isnan(number) || std::isinf(number)) // not rational; an infinite sphere proves nothing, so it leaks
       return everything;
   }
   const ExactPoint center = {sphere.x, sphere.y, sphere.z};

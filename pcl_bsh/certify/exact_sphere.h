@@ -17,7 +17,7 @@ namespace pcl_bsh {
 using Exact = CGAL::Exact_rational;
 using ExactPoint = std::array<Exact, 3>;
 
-/// A point with its ball: as given, and as near to the frame's coordinates as doubles come.
+/// A point with its ball: as given, and in the frame's coordinates, rounded to doubles.
 struct CertifiedPoint {
   Point3 given;
   double given_radius;
@@ -32,7 +32,7 @@ struct StoredSphere {
   float x, y, z, r;
 };
 
-/// Certainly in the sphere. False says nothing.
+/// True: the point's ball is certainly in the sphere. False: it may be in it or not.
 bool surelyContains(const StoredSphere& sphere, const CertifiedPoint& point);
 
 /// How far the point's ball sticks out of the sphere, in the clouds' unit; 0 when it does not. Exact, apart from the
@@ -42,7 +42,8 @@ double excess(const LocalFrame& frame, const StoredSphere& sphere, const Certifi
 /// Stored radius over the radius of the smallest sphere around the points and their balls: exact for points; for balls
 /// to some 1e-10. None when the smallest radius is 0.
 /// @param points at least one
-/// @throws std::logic_error when the sphere is smaller than the smallest, which only a leak explains.
+/// @throws std::logic_error when, for points without balls, the sphere is smaller than the smallest, which only a leak
+///   explains.
 std::optional<double> radiusRatio(const LocalFrame& frame, const StoredSphere& sphere,
                                   const std::vector<CertifiedPoint>& points);
 

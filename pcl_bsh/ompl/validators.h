@@ -5,8 +5,8 @@
 //   information->setMotionValidator(std::make_shared<pcl_bsh::ompl::MotionValidity>(information, world));
 //
 // The space is a JointSpace, or, for robots without continuous joints, another RealVectorStateSpace with a dimension
-// for each value of a state. States out of the joints' limits are not valid, and nothing undecided is. Both may run in
-// several threads at once, while nobody changes the world.
+// for each value of a state. States out of the joints' limits are not valid, nor is any state or motion that is
+// undecided. Both may run in several threads at once, while nobody changes the world.
 //
 // Simplifiers of OMPL cut motions that were certified, at states that are rounded, and do not ask about the parts
 // again. PathGeometric::check() certifies a path as a whole.
@@ -53,7 +53,8 @@ public:
     return world_->checkState(valuesOf(state, si_->getStateDimension())).verdict == Verdict::free;
   }
 
-  /// At most so far from obstacles and from itself, less the clearance: 0 or less where it collides.
+  /// Returns a lower bound of the distance from obstacles and from itself, less the clearance: 0 or less where it
+  /// collides.
   double clearance(const ::ompl::base::State* state) const override
   {
     return world_->clearance(valuesOf(state, si_->getStateDimension())).gap.lower - world_->options().clearance;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A body of a world, and as Bullet has it.
+// A body of a world, with its counterpart in Bullet.
 #pragma once
 
 #include <pcl_bsh/physics/world.h>
@@ -31,10 +31,10 @@ struct WorldBody {
   const Collider* collider;
   Material material;
   Eigen::Isometry3d pose, own_axes; ///< T_world_collider, T_collider_axes: of the inertia, about the centre of mass
-  double reach = 0.0;               ///< of the collider from there
+  double reach = 0.0;               ///< no place of the collider is farther from the centre of mass
   bool is_free = false;
-  bool is_led = false;      ///< to its target; of a free one
-  Eigen::Isometry3d target; ///< of one that is not free, or is led
+  bool is_led = false;      ///< a free body that moveTo() leads to its target
+  Eigen::Isometry3d target; ///< of a body that is not free, or is led
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero(), spin = Eigen::Vector3d::Zero();
   std::unique_ptr<btRigidBody> solved;
 
@@ -42,7 +42,7 @@ struct WorldBody {
   bool isAsleep() const { return is_free && !solved->isActive(); }
   bool moves() const { return !velocity.isZero(0.0) || !spin.isZero(0.0); }
 
-  /// After so many seconds at the present velocities.
+  /// Returns the pose after so many seconds at the present velocities.
   Eigen::Isometry3d after(double seconds) const
   {
     const Eigen::Vector3d from = center();
@@ -54,7 +54,7 @@ struct WorldBody {
     return there;
   }
 
-  /// One that is not free, or is led, takes the velocity that brings it to its target.
+  /// A body that is not free, or is led, takes the velocity that brings it to its target in so many seconds.
   void headForTarget(double dt)
   {
     if (is_free && !is_led) return;
@@ -68,12 +68,12 @@ struct WorldBody {
     spin = turn.angle() / dt * turn.axis();
   }
 
-  /// Tells the solver where it is, from an origin, and how it moves.
+  /// Gives the solver the pose, relative to an origin, and the velocities.
   void place(const Eigen::Vector3d& origin, double dt)
   {
     const btTransform there = transformOf(pose, origin);
     solved->setCenterOfMassTransform(there);
-    // The solver takes velocities of what is not free from two poses.
+    // The solver computes the velocities of a body that is not free from two poses.
     solved->setInterpolationWorldTransform(is_free ? there : transformOf(after(-dt), origin));
     solved->setLinearVelocity(bullet(velocity));
     solved->setAngularVelocity(bullet(spin));
@@ -90,13 +90,13 @@ struct WorldBody {
                        bullet(axes.translation() - origin));
   }
 
-  /// A place of the world, as the solver knows it of the body.
+  /// Returns a place of the world in the body's own axes, as the solver has it.
   btVector3 inOwnAxes(const Eigen::Vector3d& place) const
   {
     return bullet(own_axes.inverse() * (pose.inverse() * place));
   }
 
-  /// No place of it moves faster.
+  /// Returns an upper bound of the speed of its places.
   double mostSpeed() const { return velocity.norm() + spin.norm() * reach; }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which joints have a meaning, and how Bullet has them.
+// Checks joints, and makes Bullet's constraints of them.
 #pragma once
 
 #include <pcl_bsh/base/invalid_input.h>
@@ -23,7 +23,7 @@ inline void check(const Joint& joint, const WorldBody& a, const WorldBody& b)
     fail("its axis has no direction", "give one of a finite length above 0");
 }
 
-/// A joint of two bodies where they are.
+/// Makes the constraint that joins two bodies at their present poses.
 inline std::unique_ptr<btTypedConstraint> constraintOf(const WorldBody& a, const WorldBody& b, const Joint& joint)
 {
   const btVector3 in_a = a.inOwnAxes(joint.place), in_b = b.inOwnAxes(joint.place);

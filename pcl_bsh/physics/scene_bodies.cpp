@@ -18,15 +18,15 @@ namespace pcl_bsh {
 namespace {
 
 constexpr double kMostSteps = 1e6;  ///< of the world in one of a scene
-constexpr double kCatchingUp = 2.0; ///< times its own speed, of what was held up
-constexpr double kLedSpeed = 4.0;   ///< of what is led by hand, metres or radians in a second
+constexpr double kCatchingUp = 2.0; ///< times its own speed, of an object that was held up
+constexpr double kLedSpeed = 4.0;   ///< of an object that is led by hand, metres or radians in a second
 
 [[noreturn]] void refuse(const std::string& what, const std::string& remedy)
 {
   throw InvalidInput(Input::scene, "bodies", what, remedy);
 }
 
-/// On from one pose to another, as far as a hand leads it in so many seconds.
+/// Returns the pose on the way from one to another, as far as a hand leads an object in so many seconds.
 Eigen::Isometry3d onTheWay(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double seconds)
 {
   const double angle = Eigen::AngleAxisd(to.linear() * from.linear().transpose()).angle();
@@ -170,7 +170,7 @@ private:
     ObjectId object;
     BodyId body;
     bool falls;
-    Motion motion; ///< of one that does not
+    Motion motion; ///< of an object that does not fall
     Eigen::Isometry3d start, part;
     double reached = 0.0, next = 0.0; ///< of the motion, seconds: where it is, and where this step takes it
     std::optional<Eigen::Isometry3d> led = std::nullopt; ///< by hand, to this pose of the object
@@ -191,7 +191,7 @@ private:
     }
   }
 
-  /// One that stood still moves from now on.
+  /// Returns the entry of an object. An object that stood still until now gets one.
   Moved& movedOf(ObjectId object)
   {
     const auto found =
@@ -202,7 +202,7 @@ private:
     return moved_.emplace_back(Moved{object, body, false, NoMotion(), of.pose, of.parts[0].pose});
   }
 
-  /// Puts the scene's objects where they are.
+  /// Sets the poses of the scene's objects to those of the world's bodies.
   void followWorld()
   {
     for (const Moved& each : moved_) {
@@ -222,7 +222,7 @@ private:
     return each.part.matrix() == Eigen::Matrix4d::Identity() ? pose : pose * each.part.inverse();
   }
 
-  /// Distances of a scene see what is enclosed, too.
+  /// Warns of bodies that overlap something at the beginning, by distances of a scene, which see enclosed objects, too.
   void warnOfOverlaps()
   {
     SceneOptions asked;

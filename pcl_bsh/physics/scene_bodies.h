@@ -27,14 +27,13 @@
 PCL_BSH_EXPORT_BEGIN
 namespace pcl_bsh {
 
-/// The part that an object has among bodies. With a mass or a density it is one itself.
+/// How an object takes part among bodies. With a mass or a density, it is a body itself.
 struct SceneBody {
   std::optional<double> mass;             ///< finite, > 0
   std::optional<double> density;          ///< of a mesh that closes, or of balls; finite, > 0
   std::optional<Eigen::Vector3d> inertia; ///< about the centre of mass, along the axes of the cloud; each finite, > 0.
-                                          ///< None: that of the closed mesh, of the balls, or of the points, each of
-                                          ///< which bears as much
-  Material material;                      ///< how it touches: of any object
+                                          ///< None: that of the closed mesh, of the balls, or of points of equal mass
+  Material material;                      ///< how it touches; also of an object that is no body
 
   bool falls() const noexcept { return mass || density; } ///< whether it is a body
 };
@@ -46,10 +45,10 @@ struct BodiesOptions : WorldOptions {
 
 /// The report of a step of a scene with bodies.
 struct BodiesStep {
-  SceneResult scene;     ///< of the effects, where all objects are now
+  SceneResult scene;     ///< the effects, at the poses after the step
   std::size_t steps = 0; ///< of the world
   WorldStep solved;      ///< sums over these
-  double seconds = 0.0;  ///< that bodies took
+  double seconds = 0.0;  ///< of the clock, that bodies took
 };
 
 /// A body as it is now.
@@ -73,29 +72,30 @@ class SceneBodies {
 public:
   virtual ~SceneBodies() = default;
 
-  /// Moves all objects and computes the scene's effects. After an exception that is no InvalidInput, neither may be
-  /// stepped again.
+  /// Moves all objects and computes the scene's effects. After an exception that is no InvalidInput, neither the bodies
+  /// nor the scene may be stepped again.
   /// @param dt seconds, finite, >= 0, at most a million of BodiesOptions::step. @throws InvalidInput for another dt
   virtual BodiesStep step(double dt) = 0;
 
-  /// Leads an object by hand, in place of its motion: each step takes it on to this pose, by at most 4 m and 4 radians
-  /// in a second. An object without a mass pushes bodies. A body halts before what stops it, slides along that, and
-  /// pushes other bodies.
+  /// Leads an object by hand, in place of its motion: each step takes it on towards this pose, by at most 4 m and 4
+  /// radians in a second. An object without a mass pushes bodies. A body halts before what stops it, slides along that,
+  /// and pushes other bodies.
   /// @throws InvalidInput for a pose that is not rigid, and for an object of several parts
   virtual void lead(ObjectId object, const Eigen::Isometry3d& T_world_object) = 0;
 
-  /// Ends that: a body moves freely from here, another object stays here.
+  /// Ends lead(): a body moves freely from its present pose, another object stays there.
   virtual void release(ObjectId object) = 0;
 
   virtual std::vector<BodyState> states() const = 0;      ///< of all bodies, by object
   virtual std::vector<BodyContacts> contacts() const = 0; ///< by (a, b); none before the first step
 
-  /// About bodies that begin in something, a line each.
+  /// Warnings about bodies that overlap something at the beginning, a line each.
   virtual const std::vector<std::string>& warnings() const noexcept = 0;
 };
 
-/// The name of a listed effect that does not go with bodies, or null. A response or gravity would move what bodies
-/// move, deformed points have no mass, and the way of a body is no leg that first_contact and swept could look at.
+/// The name of a listed effect that does not go with bodies, or null. A response or gravity would move the objects that
+/// bodies move, deformed points have no mass, and the way of a body is no leg that first_contact and swept could look
+/// at.
 inline const char* effectAgainstBodies(const Effects& effects) noexcept
 {
   for (const Effect effect :
@@ -104,7 +104,7 @@ inline const char* effectAgainstBodies(const Effects& effects) noexcept
   return nullptr;
 }
 
-/// Why no object can be what `body` says, or null. @param moves whether it has a motion
+/// Returns why an object cannot take part as `body` says, or null. @param moves whether it has a motion
 inline const char* wrongWith(const SceneBody& body, bool fixed, bool moves, std::size_t parts) noexcept
 {
   if (moves && parts > 1) return "has a motion and several parts, and one cloud pushes bodies";
@@ -117,13 +117,12 @@ inline const char* wrongWith(const SceneBody& body, bool fixed, bool moves, std:
 
 /// Takes over the motions of a scene: they begin now, and setPose(), setMotion() and deform() of its objects are
 /// forbidden from now on. Objects that are no bodies go where their motions take them, push bodies, and do not give
-/// way; one that a blocked body holds up waits, and later catches up at twice its speed. Rules about pairs do not hold
-/// for bodies, which touch every object.
+/// way. An object that a blocked body holds up waits, and later catches up at twice its speed. Rules about pairs do not
+/// hold for bodies, which touch every object.
 /// @param scene must outlive the result
 /// @param how for each object
 /// @throws InvalidInput naming the object: numbers without meaning, a density of points without radii, a body whose
-/// mesh
-///   does not close (Input::surface), wrongWith(). The same for effectAgainstBodies(), and where no object is a body.
+///   mesh does not close (Input::surface), wrongWith(). Also for effectAgainstBodies(), and where no object is a body.
 std::unique_ptr<SceneBodies> makeSceneBodies(Scene& scene, const BodiesOptions& options,
                                              const std::vector<SceneBody>& how);
 

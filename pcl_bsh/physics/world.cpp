@@ -23,8 +23,8 @@ namespace {
 
 constexpr double kErrorReduction = 0.2; ///< Bullet's share of a depth that a step takes away
 constexpr double kBouncing = 0.2;       ///< slower approaches do not bounce
-constexpr int kIterations = 400;        ///< with 60 a stone at rest rocks on: what is left of each contact moves it
-constexpr int kMostLooks = 1000;        ///< at the distance of two bodies in a step
+constexpr int kIterations = 400;        ///< with 60 a stone at rest rocks on: the residual of each contact moves it
+constexpr int kMostLooks = 1000;        ///< distances of two bodies computed in a step
 constexpr btScalar kAsleep = 0.02f;     ///< metres, or radians, in a second
 
 void checkNumber(const std::string& name, double value, double least, double most, bool open)
@@ -53,7 +53,7 @@ struct World::State {
     world.setGravity(bullet(options.gravity));
     btContactSolverInfo& info = world.getSolverInfo();
     info.m_numIterations = kIterations;
-    // In one order, what is left of each contact would push a stack to the same side in every step.
+    // In a fixed order, the residuals of contacts would push a stack to the same side in every step.
     info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_RANDMIZE_ORDER; // the solver's own seed
     info.m_splitImpulse = 0; // poses are computed here from velocities, in double
     info.m_erp2 = static_cast<btScalar>(kErrorReduction);
@@ -118,7 +118,7 @@ struct World::State {
     return (a.center() - b.center()).norm() <= a.reach + b.reach + within;
   }
 
-  /// The manifolds of all pairs that may touch, as the solver has them.
+  /// Computes the manifolds of all pairs that may touch, and gives them to the solver.
   void touch(double dt, WorldStep& report)
   {
     for (BodyId i = 0; i < bodies.size(); ++i)
@@ -151,7 +151,8 @@ struct World::State {
       }
   }
 
-  /// Bullet's manifolds have up to four contacts.
+  /// Gives the contacts of a pair to the solver, in as many of Bullet's manifolds, of up to four contacts, as they
+  /// need.
   void give(const WorldBody& a, const WorldBody& b, const std::pair<BodyId, BodyId>& key, double dt, WorldStep& report)
   {
     btPersistentManifold* into = nullptr;
@@ -191,7 +192,7 @@ struct World::State {
     if (free > 0) origin /= static_cast<double>(free);
   }
 
-  /// Keeps what the contacts bear, and ends them.
+  /// Keeps the impulses of the contacts for the next step, and removes the contacts.
   void takeImpulses()
   {
     impulses.clear();
@@ -215,8 +216,8 @@ struct World::State {
     return found.interval.upper < 0.999 * distance;
   }
 
-  /// For how many seconds of a step two bodies may move until they come to half of their distance; nothing where they
-  /// do not come so near, even if one of them halts.
+  /// Returns for how many seconds of a step two bodies may move until they come to half of their distance. None where
+  /// they do not come so near, even if one of them halts.
   std::optional<double> secondsBefore(const WorldBody& a, const WorldBody& b, double dt, Work& work) const
   {
     const double speed = a.mostSpeed() + b.mostSpeed();
@@ -231,7 +232,7 @@ struct World::State {
       if (!found.pair) return std::nullopt;
       const double distance = found.interval.lower;
       if (looks == 0 && distance > 0.0 && distance <= options.thickness / 16 && approach(a, b, distance, speed, work))
-        return 0.0; // what presses a blocked body would halve the distance in each step, to nothing
+        return 0.0; // else, pressing a blocked body would halve the distance in each step, down to 0
       if (looks == 0) halt = distance > 0.0 ? 0.5 * distance : distance - 0.5 * options.thickness;
       if (looks > 0 && distance - halt <= 1e-3 * std::abs(halt)) return seconds;
       seconds += (distance - halt) / speed;
@@ -239,7 +240,8 @@ struct World::State {
     return std::min(seconds, dt);
   }
 
-  /// For how many seconds each body may move. Two that come near each other or are joined move for equally long.
+  /// Returns for how many seconds each body may move. Two bodies that come near each other or are joined move for
+  /// equally long.
   std::vector<double> secondsOfBodies(double dt, Work& work) const
   {
     std::vector<double> seconds(bodies.size(), dt);
@@ -278,7 +280,7 @@ struct World::State {
   btSequentialImpulseConstraintSolver solver;
   IslandWorld world;
   std::vector<WorldBody> bodies;
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero(); ///< of the solver's floats: beside the bodies
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero(); ///< of the solver's floats: the middle of the free bodies
   std::map<std::pair<BodyId, BodyId>, Manifold> manifolds;
   std::map<std::pair<BodyId, BodyId>, std::unique_ptr<btTypedConstraint>> joints;
   std::map<std::tuple<BodyId, BodyId, std::uint32_t>, btScalar> impulses; ///< of the last step, by contact

@@ -34,7 +34,7 @@ struct Material {
   double restitution = 0.0; ///< in [0, 1]
 };
 
-/// Two bodies keep a place in common, and a hinge an axis.
+/// A joint holds a place of two bodies together, and a hinge an axis, too.
 struct Joint {
   Eigen::Vector3d place;                    ///< in the world, metres
   std::optional<Eigen::Vector3d> axis = {}; ///< of a hinge, of any length above 0; none: a ball and socket
@@ -79,7 +79,7 @@ public:
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
 
-  /// A part of the surroundings. moveTo() pushes with it whatever is in the way.
+  /// Adds a part of the surroundings. With it, moveTo() pushes whatever is in the way.
   /// @throws InvalidInput for a pose that is not rigid, a material without meaning
   BodyId addFixed(const Collider& collider, const Eigen::Isometry3d& T_world_collider = Eigen::Isometry3d::Identity(),
                   const Material& material = {});
@@ -101,8 +101,9 @@ public:
 
   void setVelocity(BodyId body, const Eigen::Vector3d& velocity, const Eigen::Vector3d& spin = Eigen::Vector3d::Zero());
 
-  /// Where a body is to be after the next step: it goes there straight, at constant speed. Where it is cut, it goes on
-  /// in the next step. A fixed one gives way to nothing; one that moves freely to what it meets, until release().
+  /// Sets where a body is to be after the next step. It goes there straight, at constant speed. Where it is cut, it
+  /// goes on in the next step. A fixed body gives way to nothing; a free one gives way to what it meets, and is led
+  /// until release().
   void moveTo(BodyId body, const Eigen::Isometry3d& T_world_collider);
   void release(BodyId body);       ///< moves freely again, at the velocity that it has
   bool isThere(BodyId body) const; ///< whether it is where moveTo() wanted it
@@ -110,8 +111,8 @@ public:
   /// The last contacts of all pairs that have any, by their bodies, the smaller first; borrowed, until the next step.
   const std::map<std::pair<BodyId, BodyId>, Manifold>& contacts() const;
 
-  /// Moves all bodies. A body that would come to half of its distance from a surface halts there: before it, it is at
-  /// no instant nearer, whatever its speed. @param dt seconds, finite, > 0. @throws InvalidInput
+  /// Moves all bodies. A body that would come to half of its distance from a surface halts there. So it is nearer than
+  /// that at no instant, whatever its speed. @param dt seconds, finite, > 0. @throws InvalidInput
   WorldStep step(double dt);
 
 private:

@@ -9,7 +9,7 @@
 
 namespace pcl_bsh {
 
-/// As the core knows them.
+/// Returns PCL's fields in the core's type.
 inline std::vector<RecordField> recordFields(const std::vector<pcl::PCLPointField>& fields)
 {
   std::vector<RecordField> same;
@@ -18,7 +18,7 @@ inline std::vector<RecordField> recordFields(const std::vector<pcl::PCLPointFiel
   return same;
 }
 
-/// The core's, of PCL's fields.
+/// As the core's withUncertainty(), for PCL's fields.
 inline PointsView withUncertainty(const PointsView& view, const std::vector<pcl::PCLPointField>& fields,
                                   const std::string& cloud, const Uncertainty& uncertainty)
 {

@@ -13,15 +13,15 @@
 
 namespace pcl_bsh {
 
-/// Renumbers the corners of faces of one mesh, for several lists of faces in turn. A list costs what it has, not what
-/// the mesh has.
+/// Renumbers the corners of faces of one mesh, for several lists of faces in turn. The cost of a list depends on its
+/// own size, not on that of the mesh.
 class UsedVertices {
 public:
-  /** Of a mesh of so many. */ explicit UsedVertices(std::size_t vertices) : number_(vertices, unused) {}
+  /** For a mesh of so many vertices. */ explicit UsedVertices(std::size_t vertices) : number_(vertices, unused) {}
 
   /// Renumbers corners so that only vertices which a face has are left, in their order.
   /// @param faces of corners from 0, each below the number of vertices
-  /// @param cornersOf from a face to a range of its corners, which are replaced
+  /// @param cornersOf called with a face, returns a range of its corners, which are replaced
   /// @return the vertices that are left, by their former numbers
   template <typename Faces, typename CornersOf>
   pcl::Indices keep(Faces& faces, const CornersOf& cornersOf)
@@ -51,7 +51,7 @@ private:
   /// Looks through the range of numbers where that is quicker than sorting.
   void order(pcl::Indices& used) const
   {
-    constexpr std::size_t scattered = 16; // numbers for each that is used
+    constexpr std::size_t scattered = 16; // numbers in the range for each used one
     if (used.empty()) return;
     const auto [least, greatest] = std::minmax_element(used.begin(), used.end());
     const auto first = static_cast<std::size_t>(*least), last = static_cast<std::size_t>(*greatest);
@@ -67,7 +67,7 @@ private:
   std::vector<std::uint32_t> number_; ///< of each vertex
 };
 
-/// UsedVertices of the faces of a mesh that are left.
+/// As UsedVertices::keep(), for one list: the faces of a mesh that are left.
 template <typename Faces, typename CornersOf>
 pcl::Indices keepUsedVertices(std::size_t vertices, Faces& faces, const CornersOf& cornersOf)
 {
@@ -82,7 +82,7 @@ pcl::Indices keepUsedVertices(std::size_t vertices, Faces& faces)
       vertices, faces, [](auto& face) -> auto& { return face; });
 }
 
-/// The values of those that are kept. @pre no more values than flags
+/// Returns the values whose flag in `kept` is not 0, in their order. @pre no more values than flags
 template <typename Value>
 std::vector<Value> keptValues(const std::vector<Value>& values, const std::vector<std::uint8_t>& kept)
 {

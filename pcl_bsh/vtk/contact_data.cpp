@@ -51,7 +51,7 @@ vtkSmartPointer<vtkPolyData> contactArrows(vtkPolyData& contacts, double length)
   glyphs->SetSourceConnection(arrow->GetOutputPort());
   glyphs->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "normal");
   glyphs->SetVectorModeToUseVector();
-  glyphs->SetScaleModeToScaleByVector(); // of length 1, or 0
+  glyphs->SetScaleModeToScaleByVector(); // normals have a length of 1, or 0 where there is no direction
   glyphs->SetScaleFactor(length);
   glyphs->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
   glyphs->Update();

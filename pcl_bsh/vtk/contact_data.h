@@ -18,7 +18,7 @@ namespace pcl_bsh::vtk {
 vtkSmartPointer<vtkPolyData> contactData(const std::vector<Contact>& contacts);
 
 /// An arrow for each contact of contactData(), along its normal, with its arrays at every corner. It begins at the
-/// place. One without a direction has none.
+/// place. A contact without a direction has no arrow.
 /// @param length of each, in the clouds' unit
 vtkSmartPointer<vtkPolyData> contactArrows(vtkPolyData& contacts, double length);
 

@@ -2,7 +2,7 @@
 #include <pcl_bsh/vtk/display.h>
 
 #include <EGL/egl.h>
-#include <X11/Xlib.h> // here alone: its macros are everywhere
+#include <X11/Xlib.h> // included here alone, as its macros are common words
 #include <poll.h>
 
 #include <mutex>

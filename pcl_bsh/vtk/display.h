@@ -9,7 +9,8 @@ namespace pcl_bsh::vtk {
 
 /// Whether the X server that DISPLAY names answers. Where it does not, VTK's ordinary windows end the program. The
 /// connection stays open until the next call: a server that loses its only client begins anew, and meanwhile lets
-/// nobody in. Objects that this thread drew without a display let go of it: windows may be opened.
+/// nobody in. Where the server answers, EGL, which draws without a display, lets go of this thread, so that windows may
+/// be opened.
 bool haveDisplay();
 
 } // namespace pcl_bsh::vtk

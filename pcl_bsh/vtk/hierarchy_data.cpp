@@ -44,7 +44,8 @@ struct Cell {
   double radius() const { return node.r[lane] * frame.unit; }
 };
 
-/// Calls visit(cell) for what a node has at the level, its own children being at `at`.
+/// Calls visit(cell) for the cells below a node that are at the level, or are leaves above it.
+/// @param at the level of the node's children
 template <class Visit>
 void eachBelow(const Voxel& voxel, int number, std::uint32_t index, int at, int level, const Visit& visit)
 {

@@ -47,7 +47,7 @@ bool isBlockOf(const std::string& stem, const std::string& name)
   const std::string end = ".vtp";
   if (name.size() <= stem.size() + end.size() || name.compare(0, stem.size(), stem) != 0) return false;
   if (name.compare(name.size() - end.size(), end.size(), end) != 0) return false;
-  bool digit = true; // what came last
+  bool digit = true; // whether the last character was one
   std::size_t numbers = 0;
   for (const char c : name.substr(stem.size(), name.size() - stem.size() - end.size())) {
     if (c == '_' ? !digit : !(c >= '0' && c <= '9') || numbers == 0) return false;
@@ -73,8 +73,8 @@ std::vector<std::string> listedIn(const fs::path& vtm, const std::string& stem)
 }
 
 /// The files of a .vtm's blocks: which are ours to write, and which to remove. A generation of blocks of NAME.vtm is
-/// NAME/NAME_<generation>_<number>.vtp, of which there was none before. Removed at the end, or when the program is told
-/// to stop, unless they are to be kept.
+/// NAME/NAME_<generation>_<number>.vtp; no earlier block has this generation. The destructor removes the blocks, as
+/// does a request to stop the program, unless keep() was called.
 class BlockFiles {
 public:
   /// @throws FileError when NAME is no folder, or holds what is named otherwise
@@ -122,7 +122,7 @@ public:
     return folder_ / (stem_ + "_" + std::to_string(generation_) + "_" + std::to_string(made_.size()) + ".vtp");
   }
 
-  /// Gives the next block its file.
+  /// Puts the file of the next block in place.
   void commit(files::FileReplacement& file, const fs::path& name, const std::string& block)
   {
     {
@@ -163,7 +163,7 @@ public:
 
 private:
   fs::path folder_;
-  std::optional<files::OutputFolder> made_folder_; ///< goes after the blocks in it
+  std::optional<files::OutputFolder> made_folder_; ///< removed after the blocks in it
   std::string stem_;
   std::vector<fs::path> earlier_;
   std::size_t generation_ = 0;
@@ -179,14 +179,14 @@ void requireFile(const fs::path& path)
     throw files::FileError(path, "is no ordinary file", "name another file");
 }
 
-/// As a text, since VTK's writer crashes where a disk is full (9.1: vtkXMLUnstructuredDataWriter frees what it has not
-/// set).
+/// VTK writes into a text, since its writer of files crashes where a disk is full (9.1: vtkXMLUnstructuredDataWriter
+/// frees what it has not set).
 void fill(files::FileReplacement& file, vtkPolyData& data)
 {
   vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetInputData(&data);
   writer->WriteToOutputStringOn();
-  writer->SetDataModeToBinary(); // appended data is refused by expat since its mends of 2024
+  writer->SetDataModeToBinary(); // expat refuses appended data since its corrections of 2024
   writer->SetCompressorTypeToNone();
   if (writer->Write() != 1) throw std::runtime_error("VTK: could not write poly data as XML");
   file.stream() << writer->GetOutputString();

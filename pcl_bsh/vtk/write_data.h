@@ -18,12 +18,12 @@ namespace pcl_bsh::vtk {
 /// Writes a .vtp file. @throws std::runtime_error naming the file
 void writeVtp(vtkPolyData& data, const std::filesystem::path& path);
 
-/// A block, and how it is called.
+/// The name of a block, and its data.
 using NamedData = std::pair<std::string, vtkSmartPointer<vtkPolyData>>;
 
 /// Writes a .vtm file, NAME.vtm, which lists named blocks, and beside it a folder NAME, which holds them as files
-/// NAME_0_0.vtp, NAME_0_1.vtp ... An earlier NAME.vtm is replaced when all blocks are there; then those of its blocks
-/// that are named so are removed. Nothing else is touched.
+/// NAME_0_0.vtp, NAME_0_1.vtp ... An earlier NAME.vtm is replaced when all blocks are there; then its blocks with such
+/// names are removed. Nothing else is touched.
 /// @throws std::runtime_error naming the file; when NAME is not a folder, or holds other files
 void writeVtm(const std::vector<NamedData>& blocks, const std::filesystem::path& path);
 

@@ -122,7 +122,8 @@ bool isSurface(vtkPolyData& data)
 
 bool KeptShape::isOf(const PointsView& view, bool copied, std::uint64_t checksum, bool surface)
 {
-  // A hierarchy of points looks into their memory: where that is the caller's, the same numbers elsewhere are others.
+  // A hierarchy refers to the memory of its points. So equal numbers at another address are other points, unless both
+  // are copies of ours.
   const bool same_memory = view.data == points_.data || (copied && copied_);
   const bool same_points = view.count == points_.count && view.scalar == points_.scalar && same_memory;
   if (shape_ && same_points && checksum == checksum_ && surface == surface_) return true;

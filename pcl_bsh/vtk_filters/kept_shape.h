@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An input of a VTK filter as questions know it, which lasts from one execution to the next. Not installed.
+// An input of a VTK filter as a Shape, which is kept from one execution to the next. Not installed.
 #pragma once
 
 #include <pcl_bsh/question/shape.h>
@@ -39,10 +39,10 @@ public:
   /// For a surface, the cell of each triangle.
   const std::vector<std::uint32_t>& cells() const noexcept { return cells_; }
 
-  std::size_t made() const noexcept { return made_; } ///< so far
+  std::size_t made() const noexcept { return made_; } ///< shapes so far
 
 private:
-  /// Whether the shape is of these numbers; remembers them where not, and forgets the shape.
+  /// Whether the shape was made of these numbers. If not, remembers the numbers, and drops the shape.
   bool isOf(const PointsView& view, bool copied, std::uint64_t checksum, bool surface);
   Shape& keep(Shape shape);
 

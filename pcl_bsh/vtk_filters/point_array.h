@@ -11,7 +11,7 @@
 
 namespace pcl_bsh::vtk {
 
-/// Adds a point array. @param value of each point's number
+/// Adds a point array. @param value called with the number of a point, returns its value
 template <class Array, class Value>
 void addPointArray(vtkPolyData& data, const char* name, const Value& value)
 {

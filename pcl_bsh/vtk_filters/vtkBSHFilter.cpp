@@ -121,7 +121,8 @@ vtkIdType vtkBSHFilter::GetHierarchiesBuilt()
 
 vtkMTimeType vtkBSHFilter::GetMTime()
 {
-  // VTK takes the empty output for an up-to-date one: the next Update() fails again. No event, whose observers may ask.
+  // VTK would take the empty output for an up-to-date one. So the time is now, and the next Update() executes again.
+  // MTime is set without an event, whose observers may ask for the time.
   if (this->Failed) this->MTime.Modified();
   const vtkMTimeType own = this->Superclass::GetMTime();
   return this->Transform ? std::max(own, this->Transform->GetMTime()) : own;
@@ -129,14 +130,14 @@ vtkMTimeType vtkBSHFilter::GetMTime()
 
 int vtkBSHFilter::FillInputPortInformation(int port, vtkInformation* info)
 {
-  // VTK would execute once for each block of an obstacle, and none of the answers would be that of all: what is not a
-  // whole is refused below. A cloud may come in blocks.
+  // VTK would execute once for each block of an obstacle, and no answer would be about all of it. So RequestData()
+  // refuses an obstacle in blocks. A cloud may come in blocks.
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkPolyData" : "vtkDataObject");
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1); // for VTK, which would leave the last answer where an input is gone
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1); // else VTK would leave the last answer where an input is gone
   return 1;
 }
 
-// Asks for the cloud one piece after another, for all of the obstacle and its poses: else a near part would be missed.
+// Asks for one piece of the cloud, and for all of the obstacle and its poses: else a near part would be missed.
 int vtkBSHFilter::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
   for (int port = 1; port < 3; ++port) {
@@ -205,5 +206,5 @@ int vtkBSHFilter::RequestData(vtkInformation*, vtkInformationVector** inputs, vt
     vtkErrorMacro(<< error.what());
   }
   output->Initialize();
-  return 0; // whoever depends on this output does not execute either
+  return 0; // filters that depend on this output do not execute either
 }

@@ -85,7 +85,8 @@ public:
   /// How many hierarchies this filter has built, of both inputs.
   vtkIdType GetHierarchiesBuilt();
 
-  /// With that of the transform. Now, where the last execution failed: nothing that asks again gets an old answer.
+  /// Returns the later of the filter's time and the transform's. After a failed execution, the filter's time is now:
+  /// the next Update() executes again, so that nobody gets an old answer.
   vtkMTimeType GetMTime() override;
 
 protected:
@@ -96,7 +97,7 @@ protected:
   virtual void Ask(pcl_bsh::Question& question) const = 0;
 
   /// Fills the output, which has the cloud's points and arrays. Whatever it throws is told in one line.
-  /// @param answer of whose distances `closest_point` is a point of the obstacle or, of a surface, a cell
+  /// @param answer its distances.a.closest_point names points of the obstacle or, of a surface, cells
   virtual void Fill(const pcl_bsh::Question& question, const pcl_bsh::Answer& answer, vtkPolyData* output) = 0;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;

@@ -46,7 +46,8 @@ public:
   /// How many hierarchies this source has built.
   vtkIdType GetHierarchiesBuilt();
 
-  /// Now, where the last execution failed: nothing that asks again gets an old answer.
+  /// After a failed execution, returns a time of now: the next Update() executes again, so that nobody gets an old
+  /// answer.
   vtkMTimeType GetMTime() override;
 
 protected:
