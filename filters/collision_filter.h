@@ -28,8 +28,9 @@ namespace pcl_bsh {
 /// The part that the typed filter and the one of pcl::PCLPointCloud2 share. Use CollisionFilter.
 ///
 /// filter() keeps the points of the input that do not collide; after setNegative(true), those that do, with those that
-/// are undecided (setAccuracy()). Called through a pointer to pcl::Filter, setKeepFlagged() needs an output that is not
-/// the input, and from PCL 1.15 on the output may be left alone when memory runs out: QueryFilter says where.
+/// are undecided (setAccuracy()). If filter() is called through a pointer to pcl::Filter, setKeepFlagged() needs an
+/// output that is not the input. From PCL 1.15 on, the output may then be left alone when memory runs out: QueryFilter
+/// says where.
 template <typename PointT>
 class CollisionFilterBase : public QueryFilter<PointT, CollisionSettings> {
 public:

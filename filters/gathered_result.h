@@ -43,12 +43,12 @@ TrajectoryResult gatheredResult(const TrajectoryResult& found, std::size_t group
       if (!found.flags.empty()) gathered.flags[group] = graver(gathered.flags[group], found.flags[t]);
       if (!found.first_pose.empty()) takeFirst(found.first_pose[t], gathered.first_pose[group]);
       if (!found.certain_pose.empty()) takeFirst(found.certain_pose[t], gathered.certain_pose[group]);
-      if (!found.interval.empty()) { // the ends that are numbers
+      if (!found.interval.empty()) { // fmin() leaves out ends that are NaN
         Interval& interval = gathered.interval[group];
         interval.lower = std::fmin(interval.lower, found.interval[t].lower);
         interval.upper = std::fmin(interval.upper, found.interval[t].upper);
       }
-      if (found.distance.empty() || std::isnan(found.distance[t])) continue; // a depth is less than 0
+      if (found.distance.empty() || std::isnan(found.distance[t])) continue; // NaN: none; a depth is less than 0
       const bool has_poses = !found.closest_pose.empty();
       const auto rank = [has_poses](const TrajectoryResult& of, std::size_t i) {
         return std::tuple(of.distance[i], has_poses ? of.closest_pose[i] : 0);

@@ -177,7 +177,7 @@ private:
 
 /// Divides the input's records, in their order, into kept and removed ones. Points that are not finite are always
 /// removed. `kept` may be the very list of indices that `input` is a view of.
-/// @param passes one per record: 1 for those that are kept; if `negative`, those that are not
+/// @param passes one per record: 1 where it is kept or, if `negative`, where it is not
 /// @param removed may be null
 void partRecords(const PointsView& input, const std::vector<std::uint8_t>& passes, bool negative, pcl::Indices& kept,
                  pcl::Indices* removed);
@@ -213,12 +213,12 @@ public:
     set(question_.obstacle_uncertainty, "the obstacle", uncertainty);
   }
 
-  /// The density guard: a point that is free, but no farther from a point of the obstacle than the clearance and half
-  /// the spacing of the obstacle's points there, is *not scanned densely enough*. So it is undecided: its flag is
-  /// 3, and it counts as colliding wherever points are kept or removed. FlagsRequest::spacings_of_b says what is
-  /// promised and what not, patchSpacings() how wide the holes between the obstacle's points are taken to be. These are
-  /// measured once for an obstacle. At one pose: along a trajectory, filtering throws. A surface has no holes, and
-  /// nothing to guard. Default: false.
+  /// The density guard. A free point is *not scanned densely enough* where a point of the obstacle is no farther than
+  /// the clearance and half the spacing of the obstacle's points there. So it is undecided: its flag is 3, and it
+  /// counts as colliding wherever points are kept or removed. FlagsRequest::spacings_of_b says what is promised and
+  /// what not, patchSpacings() how wide the holes between the obstacle's points are taken to be. These are measured
+  /// once for an obstacle. At one pose: along a trajectory, filtering throws. A surface has no holes, and nothing to
+  /// guard. Default: false.
   void setDensityGuard(bool density_guard) { question_.density = density_guard; }
 
   /// A wider gap of the obstacle is an opening, not a surface. 0 (default): eight times the median distance of its

@@ -150,7 +150,7 @@ private:
     return text;
   }
 
-  /// filters_voxel_grid1
+  /// Returns a tag such as filters_voxel_grid1.
   std::string madeUpTag(const StageType& type)
   {
     std::string begin = type.name;
@@ -215,7 +215,7 @@ private:
     }
   }
 
-  /// @param place of the option in the stage
+  /// @param place the option's place in the stage, for errors
   Value readOption(const Json& object, const Option& option, const std::string& place, Node& node) const
   {
     if (!object.contains(option.name)) {

@@ -94,8 +94,7 @@ public:
 };
 
 /// The name of a listed effect that does not go with bodies, or null. A response or gravity would move the objects that
-/// bodies move, deformed points have no mass, and the way of a body is no leg that first_contact and swept could look
-/// at.
+/// bodies move. Deformed points have no mass. The way of a body is no leg that first_contact and swept could look at.
 inline const char* effectAgainstBodies(const Effects& effects) noexcept
 {
   for (const Effect effect :

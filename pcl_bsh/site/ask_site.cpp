@@ -87,7 +87,7 @@ void build(const Question& question, Shape& obstacle)
 
 namespace {
 
-/// One question, of two things that are there.
+/// Answers one question about a site and an obstacle.
 class SiteAsking {
 public:
   SiteAsking(const Question& question, const Site& site, Shape* shape, const Site* other, const SiteMeans& means)
@@ -135,7 +135,7 @@ private:
   }
   bool wantsFlags() const
   {
-    const bool of_obstacle = question_.wanted.obstacle_flags && part_.shape && !question_.seen; // which tells them
+    const bool of_obstacle = question_.wanted.obstacle_flags && part_.shape && !question_.seen; // `seen` tells them
     return question_.wanted.flags || of_obstacle;
   }
   bool wantsFlagsOfSite() const { return question_.wanted.obstacle_flags && part_.other; }
@@ -172,7 +172,7 @@ private:
 
   const Question& question_;
   QuestionPart part_;
-  int begun_ = 0; ///< visits that have
+  int begun_ = 0; ///< visits so far
   SiteAnswer answer_;
 };
 

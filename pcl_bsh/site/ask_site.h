@@ -115,10 +115,10 @@ int ranks();
 /// Ends all processes of the MPI job with exit code 1: where one has failed, the others would wait for it.
 [[noreturn]] void endAllRanks();
 
-/// The answer of one hierarchy over the site. Progress is reported after each tile by the rank that had it: the share
-/// of the tiles that may have to be asked about, in the order in which they are dealt to all ranks. The search for any
-/// collision ends with the first tile that has one. The search for the smallest distance ends where all tiles left are
-/// farther.
+/// The answer of one hierarchy over the site. Progress is reported after each tile by the rank that had it. It is the
+/// share of the tiles that may have to be asked about, in the order in which they are dealt to all ranks. The search
+/// for any collision ends with the first tile that has one. The search for the smallest distance ends where all tiles
+/// left are farther.
 /// @throws InvalidInput as ask() and check() do; files::FileError for a tile that is not what the site says, and for a
 ///   field of uncertainties whose greatest values site.json lacks; Cancelled
 SiteAnswer ask(const Question& question, const Site& site, Shape& obstacle, const SiteMeans& means = {});

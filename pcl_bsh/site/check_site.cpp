@@ -22,7 +22,7 @@ class Checker {
 public:
   explicit Checker(const Site& site) : site_(site)
   {
-    // Before memory is taken for as many points as site.json says.
+    // Checks the sizes of files first, before memory is taken for as many points as site.json says.
     for (const Tile& tile : site.tiles) openTile(site.folder / tile.file, site.fields, tile.points);
     const std::filesystem::path overview = site.folder / overview_file_name;
     if (std::filesystem::exists(overview)) openRecords(overview, site.fields);
@@ -56,8 +56,8 @@ private:
     return "has record " + std::to_string(name.record) + " of source " + std::to_string(name.source);
   }
 
-  /// By bounds and greatest values, queries leave out tiles, so these must not be less than those of the points. No
-  /// tile is left out by a greatest value that is not there.
+  /// Queries leave out tiles by bounds and greatest values, so none may say less than the points do. A greatest value
+  /// that is not there leaves out no tile.
   void checkMeasures(const pcl::PCLPointCloud2& cloud)
   {
     Tile measured;

@@ -282,7 +282,7 @@ private:
     std::vector<Answer*> answers;
     for (std::size_t i = 0; i < passing_.size(); ++i) {
       if (!passing_[i]) continue;
-      passing_[i]->part.means.answers = nullptr; // of tiles that are asked about
+      passing_[i]->part.means.answers = nullptr; // kept answers are of the visit before
       parts.push_back(&passing_[i]->part);
       answers.push_back(&each[i]);
     }
@@ -303,7 +303,7 @@ private:
       }
       SiteAnswer& one = each_seen[i];
       passing_[i]->sum.tell(one);
-      one.closest = {}; // which has no pair
+      one.closest = {}; // it has no pair
       SiteObstacleAnswer& each = found.each[i];
       nearest_.tell(passing_[i]->part, i, each);
       one.warnings = warningsOfOne(i, named, each.closest.distance);

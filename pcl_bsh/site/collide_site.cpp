@@ -143,7 +143,7 @@ void flag(const QuestionPart& part, SiteAnswer& answer)
 {
   const Wanted& wanted = part.question.wanted;
   Comparison comparison(part, part.input(), part.obstacle());
-  const bool of_cloud = wanted.obstacle_flags && !part.question.seen && !comparison.isOfSites(); // which tells them
+  const bool of_cloud = wanted.obstacle_flags && !part.question.seen && !comparison.isOfSites(); // `seen` tells them
   const auto told = [&](const Tile& tile, const pcl::PCLPointCloud2& cloud, FlagsResult& found) {
     if (!part.means.receiver) return;
     Answer of_tile;

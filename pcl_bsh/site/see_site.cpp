@@ -131,7 +131,7 @@ public:
   TilesRead read;
 
 private:
-  double angle() const { return part_.question.seen_angle.value_or(0.0); } ///< which is not measured here
+  double angle() const { return part_.question.seen_angle.value_or(0.0); } ///< must be given: it is not measured here
 
   void collect()
   {
@@ -217,7 +217,7 @@ void lookAround(const std::vector<const QuestionPart*>& parts, const std::vector
   if (parts.empty()) return;
   const Question& first = parts.front()->question;
   const Site& site = parts.front()->site;
-  if (first.origin.empty()) scansOf(PointsView{}, {}, site.folder.string(), first.origin); // refuses that
+  if (first.origin.empty()) scansOf(PointsView{}, {}, site.folder.string(), first.origin); // throws: no origin is given
   requireUncertainty(site, first.uncertaintyOfInput());
   std::vector<VerdictsAtPoses> verdicts;
   for (const QuestionPart* const part : parts)

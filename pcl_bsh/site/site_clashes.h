@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The clashes of a site along a path: those that findClashes() would list of one cloud of all its points, with the same
-// ids, although a clash may lie in many tiles.
+// The clashes of a site along a path, as findClashes() would list them of one cloud of all its points. Ids are the
+// same, although a clash may lie in many tiles.
 //
 //   site::ClashFinder finder(valley, 0.25);
 //   site::ask(question, valley, wagon, {.clashes = &finder});

@@ -22,9 +22,8 @@ PointsView viewOf(vtkPolyData& data, bool& copied);
 /// Whether the data has lines, polygons or strips.
 bool isSurface(vtkPolyData& data);
 
-/// A shape made anew only when the points (and for a surface the cells) differ from those that it was made from, by a
-/// checksum of their numbers. This holds also where data was changed without a call of Modified(). Its hierarchies are
-/// kept as long.
+/// A shape that is made anew only when the points (and for a surface the cells) have changed, by a checksum of their
+/// numbers. This holds also where data was changed without a call of Modified(). Its hierarchies are kept as long.
 class KeptShape {
 public:
   explicit KeptShape(std::string name) : name_(std::move(name)) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// This project's own filter.
+// Keeps or flags points by whether they collide with an obstacle.
 #include <pcl_bsh/filters/collision_field.h>
 #include <pcl_bsh/filters/gathered_result.h>
 #include <pcl_bsh/filters/pipeline/stages/built_in.h>

@@ -30,7 +30,7 @@ struct NamedObstacle {
   std::shared_ptr<const io::MeshParts> parts; ///< of the file, once it is planned; null: it is one obstacle
 };
 
-/// The options of a stage that derives from it, beside Stage; those of the question are in the core's table.
+/// The options of a stage that derives from it, beside Stage. The question's own options are in the core's table.
 struct QuestionStage {
   std::optional<OtherCloud> obstacle; ///< or there are `obstacles`
   std::vector<NamedObstacle> obstacles;

@@ -237,7 +237,7 @@ std::uint32_t DensityTree::tileOf(const Point3& point)
   Octree& tree = octreeOf(point, p);
   Place place = tree.last;
   if (place.cell == none || !holds(place.corner, place.edge, p)) {
-    if (tree.root == none) return 0; // was not counted
+    if (tree.root == none) return 0; // no point was counted in the octree
     place = {tree.root, {}, std::ldexp(1.0, tree.exponent)};
     while (cells_[place.cell].is_divided) place = step(place, partOf(place, p));
     tree.last = place;

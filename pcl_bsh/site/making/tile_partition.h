@@ -24,8 +24,9 @@ struct DividedVoxel {
   std::uint32_t above = none; ///< index of the smallest divided voxel that holds it; none: no voxel does
 };
 
-/// Cuts the voxels in two along the longest side of the box about them, until each part is one voxel or has at most
-/// tile_points, wherever the points counted in voxels above it lie. So tiles are compact, and nearly full.
+/// Cuts the voxels in two along the longest side of the box about them, and so on. A part is a tile if it is one voxel,
+/// or has at most tile_points wherever the points counted in voxels above it lie. So tiles are compact, and nearly
+/// full.
 /// @return of each voxel its tile, counted from 0; neighbours have neighbouring numbers
 std::vector<std::uint32_t> tilesOf(const std::vector<CountedVoxel>& voxels, const std::vector<DividedVoxel>& above,
                                    std::uint64_t tile_points);

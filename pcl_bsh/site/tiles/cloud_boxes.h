@@ -48,8 +48,8 @@ private:
   std::array<std::array<double, 4>, 3> rows_;
 };
 
-/// Boxes, in the cloud's frame, about its finite points with their radii and uncertainties: about all of them, and
-/// about those of each cell of a coarse grid.
+/// Boxes, in the cloud's frame, about its finite points with their radii and uncertainties: one about all points, and
+/// one about the points of each cell of a coarse grid.
 class CloudBoxes {
 public:
   explicit CloudBoxes(const PointsView& points);

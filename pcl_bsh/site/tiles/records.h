@@ -34,8 +34,9 @@ Fields united(const std::vector<Fields>& sources, const std::vector<std::filesys
 /// Fails unless there are x y z of one floating-point type, `source` and `record`, each once.
 void requireSiteFields(const io::JsonReader& json, const Fields& fields);
 
-/// Copies fields by name from records of one layout to those of another: values as they are, float32 to float64 and
-/// back where the types are these two. Fields that a record lacks are NaN, or 0 where they are of whole numbers.
+/// Copies fields by name from records of one layout to records of another. Values stay as they are, except that float32
+/// becomes float64, or the reverse, where the types are these two. Fields that a record lacks are NaN, or 0 where they
+/// are of whole numbers.
 class RecordCopy {
 public:
   RecordCopy(const Fields& from, const pcl::PCLPointCloud2& to);

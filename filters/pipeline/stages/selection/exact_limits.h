@@ -35,8 +35,8 @@ struct RangeOf {
 
 namespace detail {
 
-/// The T nearest to the limit on its inner side, but of floats the nearest on either side; nothing when all T lie on
-/// the outer side. @param up whether the inner side is up
+/// The T nearest to the limit on its inner side; of floats, the nearest on either side. Nothing when all T lie on the
+/// outer side. @param up whether the inner side is up
 template <typename T>
 std::optional<T> inward(const std::optional<long double>& limit, bool up)
 {
