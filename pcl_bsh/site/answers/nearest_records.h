@@ -16,7 +16,7 @@ namespace pcl_bsh::site {
 struct NearRecord {
   enum class Kind : std::uint32_t {
     colliding, ///< the smallest distance of points that collide, as along a path
-    measured,  ///< the smallest distance of all points, at any pose
+    measured,  ///< the smallest distance of all points over all poses
     enclosed   ///< a place that the obstacle's faces enclose; `pose` is the number of the tile
   };
   std::uint32_t obstacle = 0;

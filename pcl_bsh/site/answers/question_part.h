@@ -52,8 +52,8 @@ void build(const Question& question, Shape& obstacle);
 NamedCloud namedSite(const Site& site);
 
 void findAny(const QuestionPart& part, SiteAnswer& answer);
-void flag(const QuestionPart& part, SiteAnswer& answer);         ///< the points of input, and obstacle in memory
-void flagObstacle(const QuestionPart& part, SiteAnswer& answer); ///< flags the points of an obstacle that is a site
+void flag(const QuestionPart& part, SiteAnswer& answer);         ///< flags the input, and an obstacle in memory
+void flagObstacle(const QuestionPart& part, SiteAnswer& answer); ///< flags an obstacle that is a site
 void findClosest(const QuestionPart& part, SiteAnswer& answer);
 void measure(const QuestionPart& part, SiteAnswer& answer);
 void followPath(const QuestionPart& part, SiteAnswer& answer);
