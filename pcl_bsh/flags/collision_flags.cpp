@@ -33,7 +33,7 @@ public:
   {
     if (!a.hierarchy().empty() && !b.hierarchy().empty()) {
       if (marked_)
-        for (std::uint32_t v = 0; v < a.hierarchy().storage().voxel_count; ++v) voxels_.places.push_back({v, v});
+        for (std::uint32_t v = 0; v < a.hierarchy().storage().voxel_count; ++v) voxels_.places.push_back(v);
       else
         findNearVoxels(query_, voxels_.places, work);
     }
@@ -41,8 +41,8 @@ public:
     const bool whole = cloud.size() == cloud.view().count; // the hierarchy holds all records
     flags_.assign(cloud.view().count, marked_ && whole && !voxels_.places.empty() ? Verdict::undecided : Verdict::free);
     if (!marked_ || whole) return;
-    for (const FlaggedPlace& place : voxels_.places)
-      cloud.storage().forEachRecord(place.voxel, [this](std::uint32_t record) { flags_[record] = Verdict::undecided; });
+    for (const std::uint32_t voxel : voxels_.places)
+      cloud.storage().forEachRecord(voxel, [this](std::uint32_t record) { flags_[record] = Verdict::undecided; });
   }
 
   /// As VoxelPasses has them.
@@ -50,9 +50,9 @@ public:
   std::uint64_t spent() const { return voxels_.spent(); }
   void passes(const StopRule& rule, std::uint64_t tests)
   {
-    voxels_.run(rule, tests, [this](const StopRule& own, const FlaggedPlace& place) {
-      FlagWriter writer(query_.a.hierarchy().storage(), place.voxel, flags_.data(), marked_);
-      const FlaggedVoxel found = flagVoxel(query_, own, place.voxel, writer);
+    voxels_.run(rule, tests, [this](const StopRule& own, std::uint32_t voxel) {
+      FlagWriter writer(query_.a.hierarchy().storage(), voxel, flags_.data(), marked_);
+      const FlaggedVoxel found = flagVoxel(query_, own, voxel, writer);
       colliding_.fetch_add(writer.colliding, std::memory_order_relaxed);
       return found;
     });
@@ -68,7 +68,7 @@ private:
   const PointPairs pairs_;
   const PointPairs certain_;
   const FlagQuery query_;
-  VoxelPasses<FlaggedPlace, FlaggedVoxel> voxels_; ///< with undecided points
+  VoxelPasses<std::uint32_t, FlaggedVoxel> voxels_; ///< with undecided points
   std::atomic<std::size_t> colliding_{0};
 };
 

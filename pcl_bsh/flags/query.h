@@ -25,12 +25,6 @@ struct FlagQuery {
   const PointPairs& surePairs() const { return certain ? *certain : pairs; }
 };
 
-/// A voxel of a with points to flag.
-struct FlaggedPlace {
-  std::uint32_t slot; ///< its number among the voxels of the query
-  std::uint32_t voxel;
-};
-
 /// The outcome of one walk through a voxel of a.
 struct FlaggedVoxel {
   Work work;
@@ -38,7 +32,7 @@ struct FlaggedVoxel {
 };
 
 /// Appends the voxels of a that may come near to anything of b, in their order.
-void findNearVoxels(const FlagQuery& query, std::vector<FlaggedPlace>& near, Work& work);
+void findNearVoxels(const FlagQuery& query, std::vector<std::uint32_t>& near, Work& work);
 
 /// Flags the points of one voxel of a.
 FlaggedVoxel flagVoxel(const FlagQuery& query, const StopRule& rule, std::uint32_t voxel, FlagWriter& writer);

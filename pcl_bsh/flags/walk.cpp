@@ -15,7 +15,7 @@ namespace {
 
 /// Appends the voxels below a node above a's voxels that may come near to anything of b, in their order.
 void findNearVoxels(const Spaces& a, const Node& others, const RelativeFrame& frame, float reach, const Node& node,
-                    std::vector<FlaggedPlace>& near, Work& work)
+                    std::vector<std::uint32_t>& near, Work& work)
 {
   const SphereLanes spheres{others.x, others.y, others.z, others.r, frame.stretch_b};
   work.node_pairs += std::uint64_t{node.count} * others.count;
@@ -25,7 +25,7 @@ void findNearVoxels(const Spaces& a, const Node& others, const RelativeFrame& fr
     const QueryBall ball{center.x, center.y, center.z, node.r[lane] * frame.stretch_a + reach, 0.0f};
     if ((spheresNear(spheres, ball, nullptr) & firstBits(others.count)) == 0) continue;
     if (node.isLeaf(lane))
-      near.push_back({static_cast<std::uint32_t>(near.size()), node.begin[lane]});
+      near.push_back(node.begin[lane]);
     else
       findNearVoxels(a, others, frame, reach, a.storage.top[node.child[lane]], near, work);
   }
@@ -33,7 +33,7 @@ void findNearVoxels(const Spaces& a, const Node& others, const RelativeFrame& fr
 
 } // namespace
 
-void findNearVoxelsOnTarget(const FlagQuery& query, std::vector<FlaggedPlace>& near, Work& work)
+void findNearVoxelsOnTarget(const FlagQuery& query, std::vector<std::uint32_t>& near, Work& work)
 {
   const Spaces a(query.a), b(query.b);
   const RelativeFrame frame(a.frame(kAboveVoxels), a.pose, b.frame(kAboveVoxels), b.pose, query.rotation);
@@ -59,7 +59,7 @@ namespace pcl_bsh {
 HWY_EXPORT(findNearVoxelsOnTarget);
 HWY_EXPORT(flagVoxelOnTarget);
 
-void findNearVoxels(const FlagQuery& query, std::vector<FlaggedPlace>& near, Work& work)
+void findNearVoxels(const FlagQuery& query, std::vector<std::uint32_t>& near, Work& work)
 {
   HWY_DYNAMIC_DISPATCH(findNearVoxelsOnTarget)(query, near, work);
 }

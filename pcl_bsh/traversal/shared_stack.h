@@ -112,7 +112,6 @@ private:
         return &*taken;
       }
       if (taken_ == 0) return nullptr;
-      ++idle_;
       waitForChange(lock);
     }
   }
