@@ -8,8 +8,9 @@
 /// `first_pose` and `closest_pose` (int, from 0; -1 where free).
 ///
 /// With the option `seen` the output's field data has three arrays. `obstacle_collision` is a verdict for each point of
-/// the obstacle or triangle of its surface (0 free, 1 collides, 2 undecided, 4 unseen; the gravest of all poses).
-/// `unseen_at_poses` counts the unseen ones at each pose, and `in_shadow_at_poses` the unseen ones that no beam passed.
+/// the obstacle, or each cell of its surface (0 free, 1 collides, 2 undecided, 4 unseen; the gravest of all poses, and
+/// of a cell's triangles). `unseen_at_poses` counts unseen points or triangles at each pose, and `in_shadow_at_poses`
+/// those that no beam passed.
 ///
 ///     vtkNew<vtkBSHCollisionFilter> collision;
 ///     collision->SetInputData(scan);

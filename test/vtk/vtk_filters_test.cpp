@@ -1109,6 +1109,25 @@ TEST(CollisionFilter, TellsWhatOfTheObstacleNobodySaw)
   filter->SetOption("pose_uncertainty", "0.2");
   filter->Update();
   EXPECT_EQ(filter->GetOutput()->GetFieldData()->GetArray("obstacle_collision")->GetTuple1(2), 2) << "undecided now";
+
+  // A surface has verdicts of its cells: here a vertex, and two quads of two triangles each.
+  const auto surface = dataOf(
+      {{1, 0, 1}, {1, 0.1, 1}, {1, 0.1, 1.1}, {1, 0, 1.1}, {5, 0, 1}, {5, 1, 1}, {5, 1, 2}, {5, 0, 2}}, VTK_DOUBLE);
+  vtkNew<vtkCellArray> vertices, quads;
+  vertices->InsertNextCell({0});
+  quads->InsertNextCell({0, 1, 2, 3});
+  quads->InsertNextCell({4, 5, 6, 7});
+  surface->SetVerts(vertices);
+  surface->SetPolys(quads);
+  filter->SetObstacleData(surface);
+  filter->SetOption("pose_uncertainty", "0");
+  filter->Update();
+  vtkDataArray* const cells = filter->GetOutput()->GetFieldData()->GetArray("obstacle_collision");
+  ASSERT_EQ(cells->GetNumberOfTuples(), 3);
+  EXPECT_EQ(cells->GetTuple1(0), 0);
+  EXPECT_EQ(cells->GetTuple1(1), 0);
+  EXPECT_EQ(cells->GetTuple1(2), 4);
+  EXPECT_EQ(filter->GetOutput()->GetFieldData()->GetArray("unseen_at_poses")->GetTuple1(0), 2) << "triangles";
 }
 
 } // namespace
