@@ -10,8 +10,8 @@
 //
 // Neighbours and their order are those of exact arithmetic on the given numbers: by ascending distance,
 // equal distances by ascending record number. Radii that the cloud's points may have play no part. A query that is not
-// finite has no neighbour; nor has anything in an empty cloud. Voxels are built as queries visit them. Several threads
-// may query one hierarchy at once.
+// finite has no neighbour; nor has anything in an empty cloud. A cloud of triangles is refused by
+// std::invalid_argument. Voxels are built as queries visit them. Several threads may query one hierarchy at once.
 #pragma once
 
 #include <pcl_bsh/export.h>

@@ -31,7 +31,8 @@ namespace pcl_bsh {
 /// within half of the spacing of one of its samples. Nothing is promised of wider holes, of edges, of surfaces nearer
 /// to each other than `widest_gap`, of wires.
 /// @param widest_gap > 0; what gapes wider is an opening, not a surface. Infinity: no opening, and quadratic time
-/// @throws std::invalid_argument when widest_gap is not above 0, or the accuracy not exact. Cancelled.
+/// @throws std::invalid_argument when widest_gap is not above 0, or the accuracy not exact, or the cloud of triangles.
+///   Cancelled.
 std::vector<float> patchSpacings(const SphereHierarchy& cloud, double widest_gap, const Effort& effort = {});
 
 /// A widest gap for scans whose points lie about as far apart in all directions: eight times the median distance from a

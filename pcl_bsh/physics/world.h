@@ -105,7 +105,7 @@ public:
   /// goes on in the next step. A fixed body gives way to nothing; a free one gives way to what it meets, and is led
   /// until release().
   void moveTo(BodyId body, const Eigen::Isometry3d& T_world_collider);
-  void release(BodyId body);       ///< moves freely again, at the velocity that it has
+  void release(BodyId body);       ///< a free body moves freely again, at the velocity that it has
   bool isThere(BodyId body) const; ///< whether it is where moveTo() wanted it
 
   /// The last contacts of all pairs that have any, by their bodies, the smaller first; borrowed, until the next step.

@@ -119,7 +119,7 @@ struct TrajectoryResult {
 /// @throws std::invalid_argument naming the value: a clearance, accuracy, tolerance, pivot or pose that is not what its
 ///   declaration asks for (a pose by its index); swept: half a turn from one pose to the next, coordinates of 2^100 and
 ///   more, a tolerance too small for the size of the coordinates (some 1e-12 of it), or for the motion (which may be
-///   cut into 4,194,304 parts; it is refused before any memory is taken). Cancelled.
+///   cut into 4,194,304 parts; it is refused before any memory is taken); 2^31 poses and more. Cancelled.
 TrajectoryResult collideAlong(const Placed& scan, const SphereHierarchy& model,
                               const std::vector<Eigen::Isometry3d>& model_poses, const TrajectoryRequest& request);
 
