@@ -22,8 +22,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Greater distances are NaN; a smaller value is faster. VTK_DOUBLE_MAX (default) or infinity: no limit. In the
-  /// clouds' unit, >= 0.
+  /// Greater distances are not told, but are NaN; less is faster; without it, no limit: VTK_DOUBLE_MAX (default) or
+  /// infinity. In the clouds' unit, >= 0.
   vtkSetMacro(MaximumDistance, double);
   vtkGetMacro(MaximumDistance, double);
   ///@}
