@@ -22,6 +22,7 @@ inline Outcome runOnTwoRanks(const std::string& arguments, const std::filesystem
   const std::string out = (folder / "out").string(), err = (folder / "err").string();
   const std::string command = "cd " + place.string() + " && env -i PATH=\"$PATH\" HOME=" + (folder / "").string() +
                               " HWLOC_COMPONENTS=-gl "
+                              "OMPI_MCA_btl=^tcp " // which warns of networks that lead nowhere
                               "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
                               "mpirun --oversubscribe -n 2 " PCL_BSH_PROGRAM_DIR "/" +
                               program + ' ' + arguments + " >" + out + " 2>" + err;
