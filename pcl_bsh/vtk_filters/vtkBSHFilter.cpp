@@ -193,6 +193,8 @@ int vtkBSHFilter::RequestData(vtkInformation*, vtkInformationVector** inputs, vt
     if (is_surface) {
       for (std::uint32_t& nearest : answer.distances.a.closest_point)
         if (nearest != pcl_bsh::kNothing) nearest = kept.cells()[nearest];
+    }
+    if (is_surface && question.seen) {
       std::vector<pcl_bsh::Verdict> of_cells(static_cast<std::size_t>(obstacle->GetNumberOfCells()));
       for (std::size_t i = 0; i < answer.obstacle_flags.size(); ++i) {
         pcl_bsh::Verdict& of_cell = of_cells[kept.cells()[i]];

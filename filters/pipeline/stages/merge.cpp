@@ -102,14 +102,12 @@ private:
     return count;
   }
 
-  /// Appends where the scanners of an input's scans stood, where that is known: a viewpoint stands for one scan, and at
-  /// the origin for none.
+  /// Appends where the scanners of an input's scans stood, where that is known. A viewpoint stands for one scan.
   static void addScanners(const StageCloud& input, std::uint64_t count, std::vector<io::Viewpoint>& scanners)
   {
     if (input.scanners.size() == count)
       scanners.insert(scanners.end(), input.scanners.begin(), input.scanners.end());
-    else if (input.scanners.empty() && count == 1 &&
-             !std::equal(input.viewpoint.begin(), input.viewpoint.begin() + 3, io::no_viewpoint.begin()))
+    else if (input.scanners.empty() && count == 1 && io::tellsPlace(input.viewpoint))
       scanners.push_back(input.viewpoint);
   }
 

@@ -32,6 +32,12 @@ namespace pcl_bsh::io {
 using Viewpoint = std::array<double, 7>;
 inline constexpr Viewpoint no_viewpoint = {0, 0, 0, 1, 0, 0, 0};
 
+/// Whether a viewpoint tells where a scan was made. Files without one have it at the origin.
+inline bool tellsPlace(const Viewpoint& viewpoint)
+{
+  return viewpoint[0] != 0.0 || viewpoint[1] != 0.0 || viewpoint[2] != 0.0;
+}
+
 /// The part of a LAS file beside its points: scale and offset, version, records of the coordinate system and others.
 /// For writeCloud(), which keeps it. Where the file is no LAS, it has the coordinate system alone; null where that is
 /// not known.

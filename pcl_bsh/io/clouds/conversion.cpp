@@ -55,8 +55,8 @@ void Conversion::operator()(pcl::PCLPointCloud2& records, std::uint64_t first) c
 void Conversion::moveScanners(CloudFacts& facts) const
 {
   const auto move = [&](Viewpoint& viewpoint) {
+    if (!tellsPlace(viewpoint)) return;
     Point3 place = {viewpoint[0], viewpoint[1], viewpoint[2]};
-    if (place == Point3{}) return;
     if (transform_)
       (*transform_)({&place, 1}, 0);
     else

@@ -18,8 +18,8 @@ ScanOrigins originsOf(const pcl::PCLPointCloud2& cloud, const CloudFacts& facts)
       const Viewpoint& pose = facts.scanners.front();
       return ScanOrigins::of({pose[0], pose[1], pose[2]});
     }
-    const Point3 origin = {facts.viewpoint[0], facts.viewpoint[1], facts.viewpoint[2]};
-    return origin == Point3{0, 0, 0} ? ScanOrigins() : ScanOrigins::of(origin);
+    if (!tellsPlace(facts.viewpoint)) return {};
+    return ScanOrigins::of({facts.viewpoint[0], facts.viewpoint[1], facts.viewpoint[2]});
   }
   ScanOrigins origins{scan_field_name, {}};
   for (const Viewpoint& pose : facts.scanners)

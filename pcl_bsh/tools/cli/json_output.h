@@ -24,8 +24,8 @@ inline nlohmann::ordered_json workJson(const Work& work)
           {"exact_decisions", work.exact_decisions}, {"voxels_built", work.voxels_built}};
 }
 
-/// Returns the result of `check`. Where it throws a std::runtime_error, and `json` is set, standard output gets
-/// `failure` with the text as `error`.
+/// Returns the result of `check`. Where it throws, and `json` is set, standard output gets `failure` with the text as
+/// `error`.
 template <class Check>
 auto checkTold(bool json, nlohmann::ordered_json failure, const Check& check)
 {
