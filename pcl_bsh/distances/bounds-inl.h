@@ -168,8 +168,8 @@ HWY_INLINE void raiseBySlabs(const CarriedNode& spheres, const DistanceObstacle&
           hn::Add(hn::LoadU(d, spheres.r + i), hn::Set(d, obstacle.slack)), lower + i);
 }
 
-/// Whether a child is much farther from a sphere of b than that is wide. Nearer ones differ in more than what is
-/// opposite, and slabs cost more than they spare.
+/// Whether the farthest child is more than eight radii from a sphere of b, by its lower bound. Slabs of nearer ones
+/// cost more time than they spare.
 inline bool isFar(const float* lower, std::uint32_t count, float radius)
 {
   return *std::max_element(lower, lower + count) > 8.0f * radius;

@@ -54,8 +54,8 @@ public:
       obstacle.cross_slabs = voxel.cross_slabs.of(voxel, b_.storage.view, work_);
   }
 
-  /// Whether slabs of the visit's children and of the obstacle can be compared, and say more than spheres: of points,
-  /// or of long triangles. Spheres hold triangles that are short beside a voxel as they hold points.
+  /// Whether slabs of the visit's children and of the obstacle can be compared, and spare work: those of points, or
+  /// where one side has long triangles. Slabs of short triangles prune no more pairs than their spheres do.
   bool mayHave(const FlagVisit& visit) const
   {
     const ObstacleVoxel& obstacle = obstacles_[visit.obstacle];

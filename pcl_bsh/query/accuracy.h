@@ -31,8 +31,8 @@ struct Accuracy {
 
   /// The descent opens the sphere trees below the voxels down to this level: 0 compares the voxels' spheres, each level
   /// more opens nodes of eight children. Pairs that spheres do not decide are left undecided. At level 0 flags and
-  /// distances of points build nothing. anyCollision() and closestPair() end where a node below the level would tell
-  /// most, but look for a near pair below it.
+  /// distances of points build nothing. anyCollision() and closestPair() open the nearest pair of nodes first. They end
+  /// when its node is below this level, but a descent that has begun goes on to the points, for a near pair.
   static Accuracy level(unsigned depth) noexcept { return {Mode::level, static_cast<double>(depth)}; }
 
   /// Stops after about so many sphere tests: the same answer on every machine. Where points of both clouds are flagged,

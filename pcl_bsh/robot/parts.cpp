@@ -14,7 +14,8 @@ namespace pcl_bsh::robots {
 namespace {
 
 constexpr std::size_t kChildren = 4;
-constexpr std::size_t kPatches = 128, kPatchTriangles = 2; ///< of a mesh, at most; of a patch, at least
+constexpr std::size_t kPatches = 128;      ///< a mesh has no more
+constexpr std::size_t kPatchTriangles = 2; ///< a patch of so many triangles is not halved
 
 struct Corners : std::array<Eigen::Vector3d, 3> {
   std::uint32_t record = 0;

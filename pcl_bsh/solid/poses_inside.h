@@ -18,7 +18,7 @@ struct PosesInside {
   /// One per record of the cloud's view: the first pose at which the point is inside, or on the surface; or kNothing.
   std::vector<std::uint32_t> first;
   std::size_t inside = 0; ///< records that have one
-  Work work;              ///< of one label each where a node has one; as LabelsResult has it
+  Work work;              ///< as LabelsResult counts it, at all poses
 };
 
 /// Finds the first pose of the solid that holds each point. A node of the cloud is visited only for the poses at which
