@@ -65,7 +65,8 @@ public:
     // Per axis, of a shift up to `far` and of products that add up to the radius at most: rows are of length 1.
     const double carried = kCarriedShiftError * far + kCarriedProductError * (1.0 + skew) * radius;
     error = placing_ + kAxes * carried * (1.0 + kDoubleMargin) + kSmallestLength;
-    const LengthBand length_band(query.between, query.request.accuracy);
+    // Pairs with reaches of their own are compared without a tolerance.
+    const LengthBand length_band(query.between, query.nearestDecides() ? query.request.accuracy : Accuracy::exact());
     band = length_band.band([&](double distance) { return skewedBand(distance, error, skew); });
   }
 

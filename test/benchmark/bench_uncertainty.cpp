@@ -110,9 +110,10 @@ void ask(const std::string& query, const SphereHierarchy& a, const SphereHierarc
     entry.colliding = found.a.size();
     entry.undecided = found.undecided_a.size();
   }
-  else if (query == "path" || query == "swept") {
+  else if (query == "path" || query == "path_distances" || query == "swept") {
     TrajectoryRequest along;
     along.clearance = clearance;
+    along.distances = query == "path_distances";
     if (query == "swept") along.swept = 0.1 * clearance;
     const TrajectoryResult found = collideAlong({a}, b, path(clearance), along);
     entry.colliding = found.colliding;
@@ -212,10 +213,10 @@ int main(int argc, char** argv)
   app.add_option(
          "--query", options.queries,
          "flags, lists (of colliding and undecided points), any (of two clouds at 20 poses, each alone), path "
-         "(flags along these poses), swept (the same of the motion between them), poses (any at 1000 of them, in "
-         "one call), scene (flags at each of them)")
+         "(flags along these poses), path_distances (and the smallest distances), swept (flags of the motion between "
+         "them), poses (any at 1000 of them, in one call), scene (flags at each of them)")
       ->delimiter(',')
-      ->check(CLI::IsMember({"flags", "lists", "any", "path", "swept", "poses", "scene"}))
+      ->check(CLI::IsMember({"flags", "lists", "any", "path", "path_distances", "swept", "poses", "scene"}))
       ->capture_default_str();
   app.add_option("--size", options.size, "points of a made cloud")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--clearances", options.clearances, "in spacings of the cloud")

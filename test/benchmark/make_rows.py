@@ -55,7 +55,7 @@ PROGRAMS = {
     "surface.csv": ["bench_surface --clock cpu"],
     "trajectory.csv": ["bench_trajectory --scale 0.1"],
     "tight.csv": ["bench_trajectory --scale 0.02 --scenes tight --racers pcl_bsh --threads 1 --densities 0 --warm-poses 5 --clock cpu"],
-    "uncertain_poses.csv": ["bench_uncertainty --scene terrain,lion --query flags,path,swept,poses,scene --clearances 5 --clock cpu --repeat 7"],
+    "uncertain_poses.csv": ["bench_uncertainty --scene terrain,lion --query flags,path,path_distances,swept,poses,scene --clearances 5 --clock cpu --repeat 7"],
     "uncertainty.csv": ["bench_uncertainty --scene terrain,lion --query flags,lists,any,path --clock cpu --repeat 2"],
     "volumes.csv": [f"bench_volumes {clouds} --name {name} --clearance {clearance} --pose={pose} --clock cpu"
                     for name, clouds, clearance, pose in (("building", MAN, 0.5, NEAR_MAN), ("rooms", ROOMS, 0.05, NEAR_ROOM),

@@ -183,7 +183,7 @@ def uncertain_poses(rows):
     yield "| scan | question | plain | one length | a length per point | the pose | the pose / one length |"
     yield "|---|---|---|---|---|---|---|"
     for scene in ("terrain", "lion"):
-        for query, title in (("flags", "flags"), ("path", "path, 20 poses"), ("swept", "path, swept"), ("poses", "list of 1000 poses"), ("scene", "scene, 20 poses")):
+        for query, title in (("flags", "flags"), ("path", "path, 20 poses"), ("path_distances", "path, distances, too"), ("swept", "path, swept"), ("poses", "list of 1000 poses"), ("scene", "scene, 20 poses")):
             of = [rows.one("least [ms]", scene=scene, query=query, uncertainty=kind) for kind in ("plain", "one length", "a length per point", "the pose")]
             yield f"| {scene} | {title} | " + " | ".join(short(time, " ms") for time in of) + f" | {of[3] / of[1]:.2f} |"
 

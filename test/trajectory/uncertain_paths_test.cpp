@@ -129,6 +129,60 @@ TEST(UncertainPaths, WholeNodesByLengthsOfTheirOwn)
   for (const std::size_t count : flags) EXPECT_GT(count, 100u);
 }
 
+/// Many small steps, which leaves pass on arcs. Lengths differ so much that the nearest pair is often not one that
+/// collides. Within a tolerance, what collides has a distance all the same.
+TEST(UncertainPaths, OnArcsAsAtEachPose)
+{
+  std::size_t colliding = 0, undecided = 0, not_nearest = 0;
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed + 4000000);
+    const auto cloud = [&random](std::size_t count) {
+      Cloud made(test::makePoints(random.chance(0.5) ? test::Shape::uniform : test::Shape::plane, count, 1.0, random));
+      std::vector<float> own(count);
+      for (float& length : own) length = static_cast<float>(random.chance(0.5) ? 0.0 : random.uniform(0.0, 0.2));
+      made.setUncertainties(random.chance(0.3) ? 0.01 : 0.0, std::move(own));
+      return made;
+    };
+    const Cloud of_scan = cloud(200), of_model = cloud(120);
+    const SphereHierarchy scan(of_scan.view()), model(of_model.view());
+    Poses poses;
+    const double turn = random.uniform(-0.3, 0.3);
+    for (int k = 0; k < 48; ++k) {
+      Eigen::Isometry3d pose(Eigen::AngleAxisd(turn * k / 48.0, Eigen::Vector3d::UnitZ()));
+      pose.translation() = Eigen::Vector3d(-0.6 + 0.02 * k, 0.1, 0.2);
+      poses.push_back(pose);
+    }
+    const TrajectoryRequest all = everything(random.chance(0.2) ? 0.02 : 0.1);
+    const TrajectoryResult truth = brute_force::collideAlong({scan}, model, poses, all);
+    expectSame(collideAlong({scan}, model, poses, all), truth);
+    for (int asked = 1; asked < 16; ++asked) {
+      TrajectoryRequest some = flagsOnly(all.clearance);
+      some.distances = (asked & 1) != 0;
+      some.first_poses = (asked & 2) != 0;
+      some.closest_poses = (asked & 4) != 0;
+      some.pose_summaries = (asked & 8) != 0;
+      expectSame(collideAlong({scan}, model, poses, some), partOf(truth, some));
+      some.accuracy = Accuracy::tolerance(0.05);
+      const TrajectoryResult found = collideAlong({scan}, model, poses, some);
+      for (std::size_t i = 0; some.distances && i < found.flags.size(); ++i)
+        EXPECT_EQ(found.flags[i] == Verdict::free, found.closest_point[i] >= of_model.view().count) << i;
+    }
+    if (::testing::Test::HasFailure()) return;
+    Cloud measured_scan = of_scan, measured_model = of_model;
+    for (Cloud* const measured : {&measured_scan, &measured_model}) measured->setUncertainties(0.0, {});
+    const TrajectoryResult nearest = brute_force::collideAlong(
+        {SphereHierarchy(measured_scan.view())}, SphereHierarchy(measured_model.view()), poses, everything(10.0));
+    for (std::size_t i = 0; i < truth.flags.size(); ++i)
+      not_nearest += truth.flags[i] != Verdict::free && nearest.distance[i] < truth.distance[i];
+    colliding += truth.colliding;
+    undecided += truth.undecided;
+  }
+  EXPECT_GT(colliding, 60u);
+  EXPECT_GT(undecided, 300u);
+  EXPECT_GT(not_nearest, 50u);
+}
+
 TEST(UncertainPaths, BothEdgesToTheLastBit)
 {
   std::size_t verdicts[3] = {};

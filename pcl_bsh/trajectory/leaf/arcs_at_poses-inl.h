@@ -29,13 +29,13 @@ public:
     at_pose_(at_pose),
     voxel_frame_(voxel_frame),
     summing_(query.request.pose_summaries),
-    say_something_(query.of_points && query.nearestDecides() && voxel_frame.frame.unit == 1.0),
-    surely_(std::sqrt(voxel_frame.band.hit) * (1.0f - kRadiusMargin))
+    say_something_(query.of_points && voxel_frame.frame.unit == 1.0),
+    surely_(std::sqrt(std::max(voxel_frame.band.hit, 0.0f)) * (1.0f - kRadiusMargin))
   {
   }
 
-  /// Whether distances on arcs may decide: not where points have reaches of their own, where floats do not hold the
-  /// squares, nor of more poses than floats count.
+  /// Whether distances on arcs may decide: not where floats do not hold the squares, nor of more poses than floats
+  /// count.
   bool areFor(const VoxelMotion& motion) const
   {
     return say_something_ && motion.squares && motion.steps <= kMostSteps;
@@ -178,6 +178,7 @@ private:
     if (candidates_.size() == kMostCandidates) compareCandidates(leaf, motion);
     candidates_.push_back({box, i, k, squared});
     if (!hit) return;
+    if (squared > sure_ && !query_.nearestDecides()) return; // it may not collide, and bounds nothing
     const float high =
         roundUp((std::sqrt(static_cast<double>(squared)) * (1.0 + kRadiusMargin) + astray_) * (1.0 + query_.path.skew));
     if (summing_) {

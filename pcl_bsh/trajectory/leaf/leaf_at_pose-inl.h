@@ -53,7 +53,7 @@ public:
     const BoxLeaf other = box.points(query_.boxes);
     const double unit = query_.boxes.unit(box.voxel);
     const AffineMap map = voxel_frame_.mapAt(query_.path.poses[k], query_.boxes.offset(box.voxel), unit);
-    bool certain = (!query_.everything() || query_.nearestDecides()) && unit == 1.0 && voxel_frame_.frame.unit == 1.0;
+    bool certain = unit == 1.0 && voxel_frame_.frame.unit == 1.0;
     for (const float g : map.g) certain = certain && std::abs(g) <= voxel_frame_.far;
     LeafPoints points;
     carry(map.m, map.g, leaf.points.x(), leaf.points.y(), leaf.points.z(), leaf.points.count, points.x, points.y,
@@ -63,8 +63,9 @@ public:
     std::uint32_t hit = 0;
     if (certain) {
       std::uint32_t undecided = 0;
-      if (query_.of_pairs.isOne()) {
+      if (query_.nearestDecides() || query_.everything())
         nearestSquared(points, other.x(), other.y(), other.z(), firstBits(other.count), nearest);
+      if (query_.nearestDecides()) {
         hit = lanes & atMost(nearest, voxel_frame_.band.hit);
         undecided = lanes & ~hit & ~above(nearest, voxel_frame_.band.miss);
       }
@@ -189,33 +190,43 @@ private:
   {
     noteHits(leaf, hit, k, motion);
     if (!query_.everything()) return;
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    const bool nearest_decides = query_.nearestDecides();
     for (const std::uint32_t i : Bits(hit)) {
-      // It collides at this pose: what is farther at this pose changes nothing.
-      if (motion.at_rest && certain) leaf.lowerReach(voxel_frame_, i, roundUp(voxel_frame_.highOf(nearest[i])), motion);
-      // Only what may be as near as the nearest in floats is worth an exact look.
-      const float within = certain ? voxel_frame_.notBeyond(nearest[i]) : std::numeric_limits<float>::infinity();
       NearestPoint* best = query_.closest ? &results_.best[leaf.points.begin + i] : nullptr;
       const bool for_point = best && !(certain && nearest[i] > best->limit);
       const bool for_pose = query_.request.pose_summaries && !(certain && nearest[i] > results_.poseLimit(k));
-      if (!for_point && !for_pose) continue;
-      for (std::uint32_t j = 0; j < other.count; ++j) {
+      float nearest_hit = nearest_decides ? nearest[i] : infinity; // squared distance of a pair that collides
+      // Only pairs that may be as near as the nearest that collides are worth an exact look.
+      float within = infinity;
+      if (certain && nearest_decides)
+        within = voxel_frame_.notBeyond(nearest_hit);
+      else if (certain)
+        within = std::max(for_point ? best->limit : 0.0f, for_pose ? results_.poseLimit(k) : 0.0f);
+      for (std::uint32_t j = 0; j < other.count && (for_point || for_pose); ++j) {
         const float dx = points.x[i] - other.x()[j], dy = points.y[i] - other.y()[j], dz = points.z[i] - other.z()[j];
         const float squared = (dx * dx + dy * dy) + dz * dz;
         if (certain && squared > within) continue;
         const PointPair pair{leaf.points.record(i), other.record(j)};
-        if (!query_.of_pairs.isOne() && !results_.collide(pair, k)) continue;
+        if (!nearest_decides) {
+          if (!results_.collide(pair, k)) continue;
+          nearest_hit = std::min(nearest_hit, squared);
+          if (certain) within = std::min(within, voxel_frame_.notBeyond(squared));
+        }
         if (for_point) results_.consider(*best, pair, k);
         if (for_pose) results_.considerPose(pair, k);
       }
-      if (for_point && certain) {
-        const double high = voxel_frame_.highOf(nearest[i]);
-        best->limit = std::min(best->limit, voxel_frame_.notBeyond(nearest[i]));
-        best->reach = std::min(best->reach, roundUp(high));
+      if (!certain || nearest_hit == infinity) continue;
+      const float limit = voxel_frame_.notBeyond(nearest_hit), reach = roundUp(voxel_frame_.highOf(nearest_hit));
+      // It collides at this pose: what is farther at this pose changes nothing.
+      if (motion.at_rest) leaf.lowerReach(voxel_frame_, i, reach, motion);
+      if (for_point) {
+        best->limit = std::min(best->limit, limit);
+        best->reach = std::min(best->reach, reach);
         if (results_.bestBounds(leaf.points.begin + i, motion.interval->first))
           leaf.lowerReach(voxel_frame_, i, best->reach, motion);
       }
-      if (for_pose && certain)
-        results_.lowerPoseLimit(k, voxel_frame_.notBeyond(nearest[i]), roundUp(voxel_frame_.highOf(nearest[i])));
+      if (for_pose) results_.lowerPoseLimit(k, limit, reach);
     }
   }
 
