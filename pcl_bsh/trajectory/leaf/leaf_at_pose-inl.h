@@ -53,15 +53,15 @@ public:
     const BoxLeaf other = box.points(query_.boxes);
     const double unit = query_.boxes.unit(box.voxel);
     const AffineMap map = voxel_frame_.mapAt(query_.path.poses[k], query_.boxes.offset(box.voxel), unit);
-    bool certain = unit == 1.0 && voxel_frame_.frame.unit == 1.0;
-    for (const float g : map.g) certain = certain && std::abs(g) <= voxel_frame_.far;
+    bool in_floats = unit == 1.0 && voxel_frame_.frame.unit == 1.0;
+    for (const float g : map.g) in_floats = in_floats && std::abs(g) <= voxel_frame_.far;
     LeafPoints points;
     carry(map.m, map.g, leaf.points.x(), leaf.points.y(), leaf.points.z(), leaf.points.count, points.x, points.y,
           points.z);
     alignas(64) float nearest[kLeafPoints];
     std::fill(std::begin(nearest), std::end(nearest), std::numeric_limits<float>::infinity());
     std::uint32_t hit = 0;
-    if (certain) {
+    if (in_floats) {
       std::uint32_t undecided = 0;
       if (query_.nearestDecides() || query_.everything())
         nearestSquared(points, other.x(), other.y(), other.z(), firstBits(other.count), nearest);
@@ -86,7 +86,7 @@ public:
           if (results_.collide({leaf.points.record(i), other.record(j)}, k)) hit |= 1u << i;
       }
     }
-    if (hit != 0) note(leaf, hit, points, nearest, certain, other, k, motion);
+    if (hit != 0) note(leaf, hit, points, nearest, in_floats, other, k, motion);
   }
 
   /// Compares points of the leaf at pose k with the points in a box that is not a leaf, one by one, in double. If the
@@ -185,7 +185,9 @@ private:
   }
 
   /// Notes the points in `hit`, which collide at pose k, and their nearest pairs.
-  void note(LeafVisit& leaf, std::uint32_t hit, const LeafPoints& points, const float* nearest, bool certain,
+  /// @param nearest per point, the squared distance of its nearest pair. @param in_floats whether it bounds the
+  /// distance
+  void note(LeafVisit& leaf, std::uint32_t hit, const LeafPoints& points, const float* nearest, bool in_floats,
             const BoxLeaf& other, std::uint32_t k, const VoxelMotion& motion)
   {
     noteHits(leaf, hit, k, motion);
@@ -194,29 +196,28 @@ private:
     const bool nearest_decides = query_.nearestDecides();
     for (const std::uint32_t i : Bits(hit)) {
       NearestPoint* best = query_.closest ? &results_.best[leaf.points.begin + i] : nullptr;
-      const bool for_point = best && !(certain && nearest[i] > best->limit);
-      const bool for_pose = query_.request.pose_summaries && !(certain && nearest[i] > results_.poseLimit(k));
+      const bool for_point = best && !(in_floats && nearest[i] > best->limit);
+      const bool for_pose = query_.request.pose_summaries && !(in_floats && nearest[i] > results_.poseLimit(k));
       float nearest_hit = nearest_decides ? nearest[i] : infinity; // squared distance of a pair that collides
       // Only pairs that may be as near as the nearest that collides are worth an exact look.
       float within = infinity;
-      if (certain && nearest_decides)
-        within = voxel_frame_.notBeyond(nearest_hit);
-      else if (certain)
-        within = std::max(for_point ? best->limit : 0.0f, for_pose ? results_.poseLimit(k) : 0.0f);
+      if (in_floats)
+        within = nearest_decides ? voxel_frame_.notBeyond(nearest_hit)
+                                 : std::max(for_point ? best->limit : 0.0f, for_pose ? results_.poseLimit(k) : 0.0f);
       for (std::uint32_t j = 0; j < other.count && (for_point || for_pose); ++j) {
         const float dx = points.x[i] - other.x()[j], dy = points.y[i] - other.y()[j], dz = points.z[i] - other.z()[j];
         const float squared = (dx * dx + dy * dy) + dz * dz;
-        if (certain && squared > within) continue;
+        if (in_floats && squared > within) continue;
         const PointPair pair{leaf.points.record(i), other.record(j)};
         if (!nearest_decides) {
           if (!results_.collide(pair, k)) continue;
           nearest_hit = std::min(nearest_hit, squared);
-          if (certain) within = std::min(within, voxel_frame_.notBeyond(squared));
+          if (in_floats) within = std::min(within, voxel_frame_.notBeyond(squared));
         }
         if (for_point) results_.consider(*best, pair, k);
         if (for_pose) results_.considerPose(pair, k);
       }
-      if (!certain || nearest_hit == infinity) continue;
+      if (!in_floats || nearest_hit == infinity) continue;
       const float limit = voxel_frame_.notBeyond(nearest_hit), reach = roundUp(voxel_frame_.highOf(nearest_hit));
       // It collides at this pose: what is farther at this pose changes nothing.
       if (motion.at_rest) leaf.lowerReach(voxel_frame_, i, reach, motion);
