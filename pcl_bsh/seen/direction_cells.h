@@ -48,16 +48,18 @@ struct DirectionCell {
 
   DirectionCell quarter(std::uint32_t q) const { return {face, level + 1, 2 * u + (q & 1), 2 * w + (q >> 1)}; }
 
+  double halfEdge() const { return 1.0 / static_cast<double>(std::uint64_t{1} << level); } ///< exact; ldexp() is slow
+
   Eigen::Vector3d middle() const
   {
-    const double half = std::ldexp(1.0, -static_cast<int>(level));
+    const double half = halfEdge();
     return directionOf({face, -1.0 + half * (2 * u + 1), -1.0 + half * (2 * w + 1)});
   }
 
   /// Returns the corners, in order around the cell.
   std::array<Eigen::Vector3d, 4> corners() const
   {
-    const double edge = std::ldexp(2.0, -static_cast<int>(level));
+    const double edge = 2.0 * halfEdge();
     const double u0 = -1.0 + edge * u, w0 = -1.0 + edge * w;
     return {directionOf({face, u0, w0}), directionOf({face, u0 + edge, w0}), directionOf({face, u0 + edge, w0 + edge}),
             directionOf({face, u0, w0 + edge})};
@@ -69,9 +71,9 @@ struct CellSphere {
   CellSphere() = default;
   explicit CellSphere(const DirectionCell& cell)
   {
-    const double half = std::ldexp(1.0, -static_cast<int>(cell.level));
     center = cell.middle();
-    const double length = center.norm(), farthest = 1.4142135623730952 * half; // of the face's places from its middle
+    const double length = center.norm();
+    const double farthest = 1.4142135623730952 * cell.halfEdge(); // of the face's places from its middle
     center /= length;
     // |x / |x| - y / |y|| <= 2 |x - y| / (|x| + |y|), and no place of a face is nearer than 1 (Dunkl, Williams, 1964).
     chord = 2.0 * farthest / (length + std::max(1.0, length - farthest)) * (1.0 + 0x1p-40);

@@ -138,8 +138,7 @@ HoleMap::HoleMap(const BeamTree& beams, double angle, unsigned threads)
     trees_[i].sphere = CellSphere(trees_[i].cell);
     trees_[i].root = make(trees_[i], trees_[i].cell);
   });
-  trees_.erase(std::remove_if(trees_.begin(), trees_.end(), [](const Tree& tree) { return tree.root == kCovered; }),
-               trees_.end());
+  has_any_ = std::any_of(trees_.begin(), trees_.end(), [](const Tree& tree) { return tree.root != kCovered; });
   beams_ = nullptr;
 }
 
@@ -194,10 +193,52 @@ std::uint32_t HoleMap::makeTile(Tree& tree, const DirectionCell& cell, const Cel
 
 bool HoleMap::meets(const Cone& cone, std::uint64_t& tested) const
 {
+  if (!has_any_) return false;
+  if (const std::optional<Block> block = blockAround(cone)) return meets(*block, cone, tested);
   return std::any_of(trees_.begin(), trees_.end(), [&](const Tree& tree) {
     ++tested;
     return !cone.isApartFrom(tree.sphere) && meets(tree, tree.root, tree.cell, cone, tested);
   });
+}
+
+/// Returns cells that hold all directions of a cone. Returns nothing where they are on several faces, or more than 64
+/// are side by side.
+std::optional<HoleMap::Block> HoleMap::blockAround(const Cone& cone) const
+{
+  constexpr double slack = 0x1p-30;
+  const double up = cone.direction.cwiseAbs().maxCoeff(), share = up * up - cone.sine * cone.sine;
+  if (!(share > 0.0)) return std::nullopt; // some directions do not meet the plane of the face
+  // Planes through an axis of the face touch the cone at two places u: (u up - along)^2 = sine^2 (1 + u^2).
+  const auto range = [&](double place, std::uint32_t& first, std::uint32_t& last) {
+    const double along = place * up, cells = static_cast<double>(std::uint64_t{1} << (levels_ - 1));
+    const double middle = along * up / share, half = cone.sine * std::sqrt(along * along + share) / share + slack;
+    if (!(std::abs(middle) + half < 1.0)) return false;
+    first = static_cast<std::uint32_t>((middle - half + 1.0) * cells);
+    last = static_cast<std::uint32_t>((middle + half + 1.0) * cells);
+    return last - first < 64;
+  };
+  const FacePlace place = facePlaceOf(cone.direction);
+  Block block{place.face, 0, 0, 0, 0};
+  if (!range(place.u, block.u, block.u_last) || !range(place.w, block.w, block.w_last)) return std::nullopt;
+  return block;
+}
+
+bool HoleMap::meets(const Block& block, const Cone& cone, std::uint64_t& tested) const
+{
+  const std::uint32_t trees = 1u << root_level_; // of a face, along an edge
+  const unsigned tile_level = levels_ - kTileLevels, below_root = tile_level - root_level_;
+  for (std::uint32_t w = block.w >> kTileLevels; w <= block.w_last >> kTileLevels; ++w)
+    for (std::uint32_t u = block.u >> kTileLevels; u <= block.u_last >> kTileLevels; ++u) {
+      const Tree& tree = trees_[(block.face * trees + (w >> below_root)) * trees + (u >> below_root)];
+      std::uint32_t what = tree.root;
+      for (unsigned below = below_root; below > 0 && what < kCovered; --below)
+        what = tree.nodes[what][(u >> (below - 1) & 1) | (w >> (below - 1) & 1) << 1];
+      ++tested;
+      if (what == kCovered) continue;
+      const DirectionCell cell{block.face, tile_level, u, w};
+      if (what == kHole ? cone.meets(cell) : meetsTile(tree.tiles[what], cell, block, cone, tested)) return true;
+    }
+  return false;
 }
 
 bool HoleMap::meets(const Tree& tree, std::uint32_t what, const DirectionCell& cell, const Cone& cone,
@@ -209,28 +250,35 @@ bool HoleMap::meets(const Tree& tree, std::uint32_t what, const DirectionCell& c
     if (cone.isApartFrom(CellSphere(cell))) return false;
   }
   if (what == kHole) return cone.meets(cell);
-  if (cell.level + kTileLevels == levels_) return meetsTile(tree.tiles[what], cell, cone, tested);
+  if (cell.level + kTileLevels == levels_) {
+    constexpr std::uint32_t last = ~std::uint32_t{0};
+    return meetsTile(tree.tiles[what], cell, {cell.face, 0, 0, last, last}, cone, tested);
+  }
   for (std::uint32_t q = 0; q < 4; ++q)
     if (meets(tree, tree.nodes[what][q], cell.quarter(q), cone, tested)) return true;
   return false;
 }
 
-bool HoleMap::meetsTile(const Tile& tile, const DirectionCell& part, const Cone& cone, std::uint64_t& tested) const
+/// @param block holds the cone, or the face
+bool HoleMap::meetsTile(const Tile& tile, const DirectionCell& part, const Block& block, const Cone& cone,
+                        std::uint64_t& tested) const
 {
   const unsigned below = levels_ - part.level;
-  const std::uint32_t size = 1u << below, u = (part.u << below) & 63, w = (part.w << below) & 63;
-  const std::uint64_t columns = bitsBetween(static_cast<int>(u), static_cast<int>(u + size));
+  const std::uint32_t u = part.u << below, w = part.w << below, more = (1u << below) - 1;
+  const std::uint32_t first = std::max(u, block.u), last = std::min(u + more, block.u_last);
+  if (first > last) return false;
+  const std::uint64_t columns = bitsBetween(static_cast<int>(first & 63), static_cast<int>(last & 63) + 1);
   std::uint64_t any = 0, all = columns;
-  for (std::uint32_t row = w; row < w + size; ++row) {
-    any |= tile[row] & columns;
-    all &= tile[row];
+  for (std::uint32_t row = std::max(w, block.w); row <= std::min(w + more, block.w_last); ++row) {
+    any |= tile[row & 63] & columns;
+    all &= tile[row & 63];
   }
   if (any == 0) return false;
   ++tested;
   if (cone.isApartFrom(CellSphere(part))) return false;
   if (all == columns) return cone.meets(part);
   for (std::uint32_t q = 0; q < 4; ++q)
-    if (meetsTile(tile, part.quarter(q), cone, tested)) return true;
+    if (meetsTile(tile, part.quarter(q), block, cone, tested)) return true;
   return false;
 }
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace pcl_bsh {
@@ -19,7 +20,7 @@ public:
   /// Whether a hole shares a direction with the cone. @param tested counts the cells looked at
   bool meets(const Cone& cone, std::uint64_t& tested) const;
 
-  bool hasAny() const { return !trees_.empty(); } ///< whether there is a hole in any direction
+  bool hasAny() const { return has_any_; } ///< whether there is a hole in any direction
 
 private:
   static constexpr unsigned kTileLevels = 6; ///< a tile has 64 x 64 cells
@@ -36,17 +37,27 @@ private:
     std::vector<Tile> tiles;
   };
 
+  /// The smallest cells from (u, w) to (u_last, w_last) of a face.
+  struct Block {
+    std::size_t face;
+    std::uint32_t u, w, u_last, w_last;
+  };
+
   std::uint32_t make(Tree& tree, const DirectionCell& cell) const;
   std::uint32_t makeTile(Tree& tree, const DirectionCell& cell, const CellSphere& sphere) const;
   bool meets(const Tree& tree, std::uint32_t what, const DirectionCell& cell, const Cone& cone,
              std::uint64_t& tested) const;
-  bool meetsTile(const Tile& tile, const DirectionCell& part, const Cone& cone, std::uint64_t& tested) const;
+  std::optional<Block> blockAround(const Cone& cone) const;
+  bool meets(const Block& block, const Cone& cone, std::uint64_t& tested) const;
+  bool meetsTile(const Tile& tile, const DirectionCell& part, const Block& block, const Cone& cone,
+                 std::uint64_t& tested) const;
 
   const BeamTree* beams_ = nullptr; ///< while it is built
   double angle_;                    ///< cellAngle()
   unsigned levels_;
   unsigned root_level_;     ///< of the trees' cells; trees are built in parallel
-  std::vector<Tree> trees_; ///< of cells of that level that have holes
+  std::vector<Tree> trees_; ///< of the cells of that level, face by face and row by row
+  bool has_any_ = false;
 };
 
 } // namespace pcl_bsh
