@@ -198,6 +198,7 @@ private:
       NearestPoint* best = query_.closest ? &results_.best[leaf.points.begin + i] : nullptr;
       const bool for_point = best && !(in_floats && nearest[i] > best->limit);
       const bool for_pose = query_.request.pose_summaries && !(in_floats && nearest[i] > results_.poseLimit(k));
+      if (!for_point && !for_pose && !motion.at_rest) continue;
       float nearest_hit = nearest_decides ? nearest[i] : infinity; // squared distance of a pair that collides
       // Only pairs that may be as near as the nearest that collides are worth an exact look.
       float within = infinity;
@@ -218,16 +219,16 @@ private:
         if (for_pose) results_.considerPose(pair, k);
       }
       if (!in_floats || nearest_hit == infinity) continue;
-      const float limit = voxel_frame_.notBeyond(nearest_hit), reach = roundUp(voxel_frame_.highOf(nearest_hit));
+      const float reach = roundUp(voxel_frame_.highOf(nearest_hit));
       // It collides at this pose: what is farther at this pose changes nothing.
       if (motion.at_rest) leaf.lowerReach(voxel_frame_, i, reach, motion);
       if (for_point) {
-        best->limit = std::min(best->limit, limit);
+        best->limit = std::min(best->limit, within);
         best->reach = std::min(best->reach, reach);
         if (results_.bestBounds(leaf.points.begin + i, motion.interval->first))
           leaf.lowerReach(voxel_frame_, i, best->reach, motion);
       }
-      if (for_pose) results_.lowerPoseLimit(k, limit, reach);
+      if (for_pose) results_.lowerPoseLimit(k, within, reach);
     }
   }
 

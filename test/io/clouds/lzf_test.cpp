@@ -60,7 +60,7 @@ TEST(Lzf, BothReadersReadWhatItWrites)
 
 TEST(Lzf, IsAsShortAsThatOfPcl)
 {
-  for (const std::size_t count : {std::size_t{1000}, std::size_t{100000}, std::size_t{1000000}}) {
+  for (const std::size_t count : std::vector<std::size_t>{1000, 100'000, 1'000'000}) {
     const Bytes bytes = repeating(7, count, 256);
     Bytes other(2 * count);
     const unsigned length =
